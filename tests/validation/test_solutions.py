@@ -20,7 +20,7 @@ VORTEX = StationaryVortex(h0=10.0, peak=3.0, radius=200.0)
 
 
 def residual(solution, x, y, time, step=1e-3):
-    """Largest residual of the three equations, each relative to the largest of its terms, by central differences."""
+    """Largest residual of the equations, each relative to its largest term, by central differences."""
     g = solution.gravity
 
     def terms(x, y, time):

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stoker:
-    """Depths ``h_left`` > ``h_right`` [m] behind and before the dam; ``angle`` [rad] is the flow direction."""
+    """Depths ``h_left`` > ``h_right`` [m] behind and before the dam; ``angle`` [rad]: flow direction."""
 
     h_left: float
     h_right: float
