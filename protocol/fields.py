@@ -1,0 +1,80 @@
+"""What all messages share: field types with their limits, and the check that numbers are finite."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Annotated, Any
+
+import msgspec
+from msgspec import Meta
+
+from protocol.limits import (
+    MAX_CELLS,
+    MAX_CREDIT,
+    MAX_PARTS,
+    MAX_SIDE,
+)
+
+# \Z, not $: the latter also matches before a trailing line feed.
+Identifier = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_-]{1,64}\Z")]
+ErrorName = Annotated[str, Meta(pattern=r"^[a-z][a-z0-9_]{0,63}\Z")]
+Name = Annotated[str, Meta(max_length=256)]
+Text = Annotated[str, Meta(max_length=2000)]
+CommandId = Annotated[int, Meta(ge=1, le=2**53)]
+FrameIndex = Annotated[int, Meta(ge=0, le=2**31 - 1)]
+Revision = Annotated[int, Meta(ge=0, le=2**53)]
+Count = Annotated[int, Meta(ge=0, le=2**53)]
+Side = Annotated[int, Meta(ge=1, le=MAX_SIDE)]
+CreditCount = Annotated[int, Meta(ge=1, le=MAX_CREDIT)]
+PartCount = Annotated[int, Meta(ge=1, le=MAX_PARTS)]
+PartNumber = Annotated[int, Meta(ge=0, lt=MAX_PARTS)]
+Positive = Annotated[float, Meta(gt=0, le=1e12)]
+NotNegative = Annotated[float, Meta(ge=0, le=1e18)]
+Coordinate = Annotated[float, Meta(ge=-1e9, le=1e9)]
+Elevation = Annotated[float, Meta(ge=-20_000, le=20_000)]
+RawSize = Annotated[int, Meta(ge=0, le=4 * MAX_CELLS)]
+
+
+def snake_case(name: str) -> str:
+    """Name of an operation: `AppendEdit` is `append_edit`."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
+
+
+def all_finite(value: Any) -> bool:
+    """Whether every float within nested tuples and mappings is finite."""
+    if isinstance(value, float):
+        return math.isfinite(value)
+    if isinstance(value, tuple | list):
+        return all(map(all_finite, value))
+    if isinstance(value, dict):
+        return all(map(all_finite, value.values()))
+    return True
+
+
+class WireStruct(msgspec.Struct, frozen=True):
+    """A frozen record that travels in a message; its numbers are finite."""
+
+    def __post_init__(self) -> None:
+        """Refuse NaN and infinities, which msgpack carries as any other number.
+
+        Raises:
+            ValueError: naming the field; the codec turns it into `InvalidMessage`.
+        """
+        for field in self.__struct_fields__:
+            if not all_finite(getattr(self, field)):
+                raise ValueError(f"Field {field!r} holds a number that is not finite")
+
+
+class Message(WireStruct, frozen=True, tag_field="op", tag=snake_case):
+    """A record that is a whole message; its operation is the class name in snake case."""
+
+
+class Command(Message, frozen=True):
+    """A message of a client that is answered exactly once.
+
+    Attributes:
+        id: number chosen by the client, larger than any it used before on this connection.
+    """
+
+    id: CommandId

@@ -1,0 +1,73 @@
+"""The numbers both peers enforce. A peer that passes one is told `too_large`, never obeyed.
+
+Sizes are in bytes. Both peers give the websocket library the matching `max_size`.
+"""
+
+INBOUND_MAX_BYTES = 1 << 20
+"""Largest message a service accepts."""
+
+OUTBOUND_MAX_BYTES = 2 << 20
+"""Largest message a client accepts."""
+
+PART_BYTES = 256 << 10
+"""Largest data field of one `frame_part` or `terrain`, so that control messages never wait long."""
+
+MAX_CELLS = 1 << 26
+"""Largest number of cells of a grid."""
+
+MAX_SIDE = 1 << 16
+"""Largest number of rows or columns of a grid."""
+
+MAX_FRAME_BYTES = 2 * MAX_CELLS + (1 << 20)
+"""Largest packed frame, put together from its parts."""
+
+MAX_TERRAIN_BYTES = 4 * MAX_CELLS + (1 << 20)
+"""Largest compressed terrain, put together from its parts."""
+
+MAX_PARTS = MAX_TERRAIN_BYTES // PART_BYTES + 1
+"""Largest number of parts of one frame or terrain."""
+
+MAX_DEPTH = 8
+"""Deepest nesting of arrays and maps in a message."""
+
+MAX_MAP_LENGTH = 64
+"""Most entries of a map."""
+
+MAX_ARRAY_LENGTH = 4096
+"""Most items of an array."""
+
+MAX_STRING_BYTES = 8192
+"""Longest string."""
+
+INBOUND_MAX_ITEMS = 20_000
+"""Most values, keys and containers in one message to a service (an edit of 4096 vertices has 16 400)."""
+
+OUTBOUND_MAX_ITEMS = 300_000
+"""Most values, keys and containers in one message to a client (a full edit list has about 150 000)."""
+
+MAX_VERTICES = 4096
+"""Most vertices of one edit."""
+
+MAX_EDITS = 1024
+"""Most edits in the working list of a run."""
+
+MAX_LOG_VERTICES = 32_768
+"""Most vertices of all edits in the working list of a run."""
+
+MAX_EDIT_WORK = 1 << 25
+"""Most candidate cells that the raster of one edit may look at."""
+
+MAX_PENDING_COMMANDS = 64
+"""Most commands a client may have unanswered."""
+
+DEFAULT_CREDIT = 2
+"""Frames a new subscription may be sent before the first `credit`."""
+
+MAX_CREDIT = 64
+"""Most frames a client may have granted and not received; what is granted beyond is lost."""
+
+KEY_FRAMES_KEPT = 4
+"""Key frames a client keeps: the latest it received. A service sends an older one again before its delta."""
+
+FRAME_GROUP = 32
+"""Most frames that share one key frame, itself included."""
