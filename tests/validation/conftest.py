@@ -1,0 +1,42 @@
+"""Fixtures ``figure`` and ``compare``: measure, assert, and keep the numbers for the table in the
+documents."""
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.validation.figures import FIGURES, Figure
+from tests.validation.runs import State, errors
+
+UNITS = {"h": "m", "discharge": "m2/s", "velocity": "m/s"}
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.stash.setdefault(FIGURES, [])
+
+
+@pytest.fixture
+def figure(request: pytest.FixtureRequest) -> Callable[..., Figure]:
+    """Record one number and assert its bounds: ``figure(case, quantity, value, below=..., ...)``."""
+
+    def record(case: str, quantity: str, value: float, **bounds) -> Figure:
+        made = Figure(case, quantity, float(value), **bounds)
+        request.config.stash[FIGURES].append(made)
+        assert made.passes, f"{case}: {quantity} is {made.value:.4g} {made.unit}, allowed {bounds}"
+        return made
+
+    return record
+
+
+@pytest.fixture
+def compare(figure) -> Callable[[str, dict[str, float], State, State, State], None]:
+    """Record all norms of a run, each below its bound, and each bound below the published scheme's error."""
+
+    def record(case: str, bounds: dict[str, float], computed: State, exact: State, published: State) -> None:
+        measured, yardstick = errors(computed, exact), errors(published, exact)
+        for norm, bound in bounds.items():
+            assert bound <= yardstick[norm], f"the bound of {norm} is laxer than the published scheme"
+            unit = UNITS[norm.split()[-1]]
+            figure(case, norm, measured[norm], unit=unit, below=bound, yardstick=yardstick[norm])
+
+    return record

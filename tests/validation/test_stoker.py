@@ -1,0 +1,84 @@
+"""Dam break on a wet bed (Stoker 1957; SWASHES section 4.1.1): 10 m against 1 m, cells of 10 m, along and
+across a grid."""
+
+import numpy as np
+import pytest
+
+from tests.validation.runs import channel, errors, l1, make_solver, solve, solve_published, square
+from tests.validation.solutions import Stoker
+
+CASE = "Stoker: dam break on a wet bed, 200 cells"
+OBLIQUE = "Stoker at 45 degrees to the grid"
+DAM = Stoker(h_left=10.0, h_right=1.0)
+GRID = channel(200, -1000.0, 1000.0)
+TIME = 40.0
+BOUNDS = {
+    "L1 of h": 0.020,
+    "L2 of h": 0.085,
+    "Linf of h": 1.0,
+    "L1 of the unit discharge": 0.13,
+    "L1 of the velocity": 0.03,
+}
+
+
+@pytest.fixture(scope="module")
+def computed():
+    return solve(DAM, GRID, TIME)
+
+
+def exact():
+    return DAM.state(*GRID.centres, TIME)
+
+
+def test_errors_stay_below_the_published_second_order_scheme(computed, compare):
+    compare(CASE, BOUNDS, computed, exact(), solve_published(DAM, GRID, TIME))
+
+
+def test_relative_error_is_far_below_what_a_second_order_peer_asserts(computed, figure):
+    relative = l1(computed[0], exact()[0]) / exact()[0].mean()
+    # ANUGA (DE1) asserts 1 % of L1 of the stage on this dam break (10 m against 1 m).
+    figure(CASE, "L1 of h relative to the mean depth", relative, below=0.005, yardstick=0.01)
+
+
+def test_first_order_run_fails_the_bounds():
+    first = errors(solve(DAM, GRID, TIME, order=1), exact())
+    assert all(first[norm] > bound for norm, bound in BOUNDS.items())
+
+
+def test_wrong_solution_fails_the_bounds(computed):
+    wrong = Stoker(h_left=10.0, h_right=1.1).state(*GRID.centres, TIME)
+    assert errors(computed, wrong)["L1 of h"] > BOUNDS["L1 of h"]
+
+
+def test_bore_stands_where_mass_and_momentum_put_it(computed, figure):
+    h_m, _, bore = DAM.plateau
+    x, h = GRID.centres[0][0], computed[0][0]
+    middle = 0.5 * (h_m + DAM.h_right)
+    last = np.flatnonzero(h > middle).max()
+    found = x[last] + GRID.dx * (h[last] - middle) / (h[last] - h[last + 1])
+    figure(CASE, "distance of the bore from the exact one", abs(found - bore * TIME), unit="m", below=5.0)
+
+
+def test_no_overshoot_at_the_bore(computed, figure):
+    over = max(computed[0].max() - DAM.h_left, DAM.h_right - computed[0].min())
+    figure(CASE, "depth above the dam's or below the tail's", over, unit="m", below=1e-5, round_off=True)
+
+
+def test_dam_break_across_the_grid_is_as_good_as_along_it(figure):
+    turned, size, cells, time = Stoker(10.0, 1.0, angle=np.pi / 4), 1600.0, 160, 20.0
+    grid, fine = square(cells, size), square(cells * 8, size)
+
+    def averages(time):
+        return (q.reshape(cells, 8, cells, 8).mean(axis=(1, 3)) for q in turned.state(*fine.centres, time))
+
+    x, y = grid.centres
+    solver = make_solver(np.zeros(x.shape), grid.dx)
+    solver.set_water(*(q.astype(np.float32) for q in averages(0.0)))
+    solver.advance_to(time)
+    # Waves from the walls come in at less than 18 m/s.
+    clear = (np.abs(x) < 0.5 * size - 18.0 * time) & (np.abs(y) < 0.5 * size - 18.0 * time)
+    along = (np.abs(x) < 0.5 * size - 18.0 * time) & (np.abs(y) < 20.0)
+    oblique = l1(solver.depth()[clear], next(averages(time))[clear])
+    aligned = solve(DAM, grid, time)[0][along]
+    straight = l1(aligned, DAM.state(x, y, time)[0][along])
+    figure(OBLIQUE, "L1 of h against the aligned run", oblique / straight, below=1.5)
