@@ -1,0 +1,32 @@
+"""Pictures by OpenGL 4.1 core; knows no window toolkit, no network, no protocol."""
+
+from viewer.render.context import check_context, create_headless_context
+from viewer.render.frame_inputs import (
+    DrapedLine,
+    EditOverlay,
+    FrameInputs,
+    FrameStats,
+    HudText,
+    LineStyle,
+    RenderOptions,
+    WaterFrame,
+    WaterPair,
+    WaterStyle,
+)
+from viewer.render.renderer import Renderer
+
+__all__ = [
+    "DrapedLine",
+    "EditOverlay",
+    "FrameInputs",
+    "FrameStats",
+    "HudText",
+    "LineStyle",
+    "RenderOptions",
+    "Renderer",
+    "WaterFrame",
+    "WaterPair",
+    "WaterStyle",
+    "check_context",
+    "create_headless_context",
+]

@@ -1,0 +1,189 @@
+"""Everything a picture may depend on. What is not in here cannot change a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass, field
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from viewer.world.camera import Camera
+
+__all__ = [
+    "DrapedLine",
+    "EditOverlay",
+    "FrameInputs",
+    "FrameStats",
+    "HudText",
+    "LineStyle",
+    "RenderOptions",
+    "WaterFrame",
+    "WaterPair",
+    "WaterStyle",
+]
+
+
+class WaterStyle(Enum):
+    """How water is coloured."""
+
+    NATURAL = "natural"
+    """Reflection, refraction and absorption with depth."""
+    DEPTH_CLASSES = "depth_classes"
+    """The classes of `viewer.world.depth_classes`, with a legend on the picture."""
+
+
+class LineStyle(Enum):
+    """What a draped line stands for."""
+
+    RAISE = "raise"
+    LOWER = "lower"
+    DRAFT = "draft"
+    SELECTED = "selected"
+
+
+@dataclass(frozen=True)
+class WaterFrame:
+    """One output time of the flood."""
+
+    key: Hashable
+    """Names this water, say (run, index): equal keys mean equal arrays, which are then uploaded once."""
+    h: npt.NDArray[np.float32]
+    """Depth [m], shape [nrows, ncols], 0 where dry."""
+    states: npt.NDArray[np.uint8] | None = None
+    """Block states of the wire (stride 32): 0 dry, 1 partial, 2 wet, shape [block_rows, block_cols].
+    None lets the renderer classify the depth itself."""
+    z_b: npt.NDArray[np.float32] | None = None
+    """The bed under this water [m, datum-relative]: base plus the edits of its run, not the preview.
+    None means the heightfield as it was when the renderer was made. Hand over the same object for the same bed."""
+
+
+@dataclass(frozen=True)
+class WaterPair:
+    """Two frames and where between them playback stands: h = (1 - alpha) first + alpha second."""
+
+    first: WaterFrame
+    second: WaterFrame
+    alpha: float = 0.0
+
+
+@dataclass(frozen=True)
+class DrapedLine:
+    """A line laid on the ground."""
+
+    vertices: tuple[tuple[float, float], ...]
+    """Grid coordinates [m]."""
+    width: float
+    """[m]"""
+    style: LineStyle
+
+
+@dataclass(frozen=True)
+class EditOverlay:
+    """The marks of terrain edits."""
+
+    revision: int
+    """Equal numbers mean an equal sign mask, which is then uploaded once."""
+    sign: npt.NDArray[np.int8]
+    """+1 raised, -1 lowered, 0 untouched, shape [nrows, ncols]."""
+    lines: tuple[DrapedLine, ...] = ()
+
+
+@dataclass(frozen=True)
+class HudText:
+    """What is written on the picture, in the window and headless alike."""
+
+    title: str = ""
+    time: str = ""
+    """Simulated and clock time, ready to show."""
+    detail: str = ""
+    """Run, branch, speed against real time, and so on; lines are split at line feeds."""
+    is_hypothetical: bool = False
+    """Marks the picture as not showing a real event."""
+    legend: bool = True
+    """Show the depth legend (when there is water)."""
+    scale_and_north: bool = True
+    """Show scale bar and north arrow."""
+    notice: str = ""
+    """A warning in the middle of the upper border, say that the connection is lost."""
+
+
+@dataclass(frozen=True)
+class RenderOptions:
+    """What the user may choose about the picture."""
+
+    exaggeration: float = 1.0
+    """Vertical exaggeration."""
+    tau_px: float = 2.0
+    """Largest screen error of the terrain's level of detail [pixels]."""
+    water_spacing_px: float = 2.0
+    """Vertices of fully wet blocks may lie this far apart on the screen [pixels]; 0 draws all of them."""
+    partial_spacing_px: float = 0.0
+    """The same for partially wet blocks; 0 draws every grid vertex, as an exact shore asks."""
+    full_mesh: bool = False
+    """Draw every vertex of the terrain: the oracle of the tests."""
+    snap_edges: bool = True
+    """Fit block edges to coarser neighbours; without it cracks open (for tests and demonstrations)."""
+    cull: bool = True
+    """Leave out blocks outside of the view."""
+    cull_covered_terrain: bool = True
+    """Leave out terrain under fully wet blocks."""
+    wireframe: bool = False
+    show_blocks: bool = False
+    """Colour blocks by level of detail."""
+    show_water: bool = True
+    show_terrain: bool = True
+    show_sky: bool = True
+    show_skirt: bool = True
+    """Walls below the border of the map."""
+    show_imagery: bool = True
+    """Use the imagery texture, if there is one."""
+    contour_interval: float = 0.0
+    """Height between contour lines [m]; 0 for none."""
+    water_style: WaterStyle = WaterStyle.NATURAL
+    depth_shown: float = 0.01
+    """Water shallower than this is not drawn [m]."""
+    light_azimuth_deg: float = 315.0
+    """Compass bearing from which the sun shines."""
+    light_elevation_deg: float = 42.0
+    """Height of the sun above the horizon."""
+    fog: bool = True
+    """Let far ground fade into the horizon."""
+    samples: int = 0
+    """Multisampling: 0 or 4."""
+    background: tuple[float, float, float] = (0.62, 0.70, 0.80)
+    """Colour behind everything where no sky is drawn."""
+
+
+@dataclass(frozen=True)
+class FrameInputs:
+    """One picture."""
+
+    camera: Camera
+    water: WaterPair | None = None
+    edits: EditOverlay | None = None
+    options: RenderOptions = field(default_factory=RenderOptions)
+    hud: HudText | None = None
+
+
+@dataclass(frozen=True)
+class FrameStats:
+    """What a picture cost."""
+
+    terrain_triangles: int
+    """Without triangles of no area."""
+    water_triangles: int
+    terrain_blocks: int
+    water_blocks: int
+    culled_blocks: int
+    """Blocks outside of the view."""
+    covered_blocks: int
+    """Visible blocks whose terrain lies under water entirely."""
+    draws: int
+    near: float
+    far: float
+    selection_ms: float
+    """Python time of choosing levels [ms]."""
+    submission_ms: float
+    """Python time of everything else in `Renderer.draw` [ms]."""

@@ -1,0 +1,171 @@
+"""The ground on the graphics card: heights, baked colour, edit marks."""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from viewer.errors import TerrainDataError
+from viewer.render.frame_inputs import EditOverlay
+from viewer.render.shader_library import build_program, set_uniforms
+from viewer.world.heightfield import Heightfield, Rect
+
+__all__ = ["GroundTextures", "height_texture"]
+
+_BAKED_SIDE_MAX = 4096
+_LIGHT_REACH = 200
+"""Cells around a change whose shade or openness may change with it."""
+
+
+def height_texture(ctx: moderngl.Context, z: npt.NDArray[np.float32]) -> moderngl.Texture:
+    """A float texture of one value a cell, row 0 first, clamped at the border and filtered linearly."""
+    texture = ctx.texture((z.shape[1], z.shape[0]), 1, np.ascontiguousarray(z), dtype="f4")
+    texture.repeat_x = texture.repeat_y = False
+    texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+    return texture
+
+
+def write_rect(texture: moderngl.Texture, values: npt.NDArray[np.generic], rect: Rect) -> None:
+    """Write the part of a raster that lies in a rectangle of cells."""
+    row0, col0, row1, col1 = rect
+    part = np.ascontiguousarray(values[row0:row1, col0:col1])
+    texture.write(part, viewport=(col0, row0, col1 - col0, row1 - row0), alignment=1)
+
+
+class GroundTextures:
+    """Textures that follow the heightfield, the light and the edits."""
+
+    def __init__(
+        self, ctx: moderngl.Context, heightfield: Heightfield, imagery: npt.NDArray[np.uint8] | None
+    ) -> None:
+        """Upload and bake.
+
+        Args:
+            ctx: the OpenGL context.
+            heightfield: the ground.
+            imagery: optional picture of the ground, shape [rows, cols, 3], row 0 in the south, covering the grid.
+
+        Raises:
+            TerrainDataError: if the imagery is not 8-bit RGB.
+        """
+        self._ctx = ctx
+        self._heightfield = heightfield
+        nrows, ncols = heightfield.z_b.shape
+        self.height = height_texture(ctx, heightfield.z_b)
+        self._revision = heightfield.revision
+        self._imagery = None if imagery is None else _imagery_texture(ctx, imagery)
+        self.mask = ctx.texture((ncols, nrows), 1, np.full((nrows, ncols), 128, dtype=np.uint8), alignment=1)
+        self.mask.repeat_x = self.mask.repeat_y = False
+        self._mask_revision: int | None = None
+
+        scale = 1.0
+        if self._imagery is not None:
+            scale = max(1.0, self._imagery.width / ncols, self._imagery.height / nrows)
+        elif max(nrows, ncols) <= _BAKED_SIDE_MAX // 4:
+            scale = 2.0
+        scale = (
+            min(scale, _BAKED_SIDE_MAX / max(nrows, ncols)) if max(nrows, ncols) < _BAKED_SIDE_MAX else 1.0
+        )
+        self._baked_size = (max(1, round(ncols * scale)), max(1, round(nrows * scale)))
+        self.colour = ctx.texture(self._baked_size, 4)
+        self.colour.repeat_x = self.colour.repeat_y = False
+        self.colour.build_mipmaps()
+        self.colour.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        self._target = ctx.framebuffer([self.colour])
+        self._program = build_program(ctx, "full_screen.vert", "bake_ground.frag")
+        self._array = ctx.vertex_array(self._program, [])
+        self._baked_for: tuple[object, ...] | None = None
+        self._elevation_range = (heightfield.z_min, heightfield.z_max)
+
+    def follow(
+        self, sun: tuple[float, float, float], show_imagery: bool, edits: EditOverlay | None
+    ) -> Rect | None:
+        """Bring all textures up to date, and return the rectangle of heights that changed."""
+        dirty = self._heightfield.changed_since(self._revision)
+        if dirty is not None:
+            write_rect(self.height, self._heightfield.z_b, dirty)
+            self._revision = self._heightfield.revision
+        baked_for = (sun, show_imagery)
+        if self._baked_for != baked_for:
+            self._bake(sun, show_imagery, (0, 0, *self._heightfield.z_b.shape))
+            self._baked_for = baked_for
+        elif dirty is not None:
+            self._bake(sun, show_imagery, dirty)
+        self._follow_edits(edits)
+        return dirty
+
+    def bind(self, height: int, colour: int, mask: int) -> None:
+        """Bind the textures to units."""
+        self.height.use(height)
+        self.colour.use(colour)
+        self.mask.use(mask)
+
+    def release(self) -> None:
+        """Give the memory back."""
+        for thing in (
+            self._array,
+            self._program,
+            self._target,
+            self.colour,
+            self.mask,
+            self.height,
+            self._imagery,
+        ):
+            if thing is not None:
+                thing.release()
+
+    def _bake(self, sun: tuple[float, float, float], show_imagery: bool, rect: Rect) -> None:
+        nrows, ncols = self._heightfield.z_b.shape
+        width, height = self._baked_size
+        row0, col0 = max(0, rect[0] - _LIGHT_REACH), max(0, rect[1] - _LIGHT_REACH)
+        row1, col1 = min(nrows, rect[2] + _LIGHT_REACH), min(ncols, rect[3] + _LIGHT_REACH)
+        x0, x1 = col0 * width // ncols, -(-col1 * width // ncols)
+        y0, y1 = row0 * height // nrows, -(-row1 * height // nrows)
+        has_imagery = show_imagery and self._imagery is not None
+        set_uniforms(
+            self._program,
+            height=0,
+            imagery=1,
+            has_imagery=int(has_imagery),
+            cells=(float(ncols), float(nrows)),
+            dx=self._heightfield.grid.dx,
+            sun=sun,
+            elevation_range=self._elevation_range,
+            window=(x0 / width, y0 / height, (x1 - x0) / width, (y1 - y0) / height),
+        )
+        self.height.use(0)
+        if self._imagery is not None:
+            self._imagery.use(1)
+        self._target.use()
+        self._target.viewport = (x0, y0, x1 - x0, y1 - y0)
+        self._ctx.enable_only(moderngl.NOTHING)
+        self._array.render(moderngl.TRIANGLES, vertices=3)
+        self.colour.build_mipmaps()
+        self.colour.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+
+    def _follow_edits(self, edits: EditOverlay | None) -> None:
+        wanted = None if edits is None else edits.revision
+        if wanted == self._mask_revision:
+            return
+        shape = self._heightfield.z_b.shape
+        if edits is None:
+            mask = np.full(shape, 128, dtype=np.uint8)
+        elif edits.sign.shape == shape:
+            mask = (128 + 127 * edits.sign.astype(np.int16)).astype(np.uint8)
+        else:
+            raise TerrainDataError(f"edit mask has shape {edits.sign.shape}, the terrain has {shape}")
+        self.mask.write(mask, alignment=1)
+        self._mask_revision = wanted
+
+
+def _imagery_texture(ctx: moderngl.Context, imagery: npt.NDArray[np.uint8]) -> moderngl.Texture:
+    if imagery.ndim != 3 or imagery.shape[2] != 3 or imagery.dtype != np.uint8:
+        raise TerrainDataError(
+            f"imagery has shape {imagery.shape} and type {imagery.dtype}, [rows, cols, 3] uint8 is needed"
+        )
+    texture = ctx.texture((imagery.shape[1], imagery.shape[0]), 3, np.ascontiguousarray(imagery), alignment=1)
+    texture.repeat_x = texture.repeat_y = False
+    texture.build_mipmaps()
+    texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+    return texture

@@ -1,0 +1,23 @@
+// The colour of the ground, lit, with edit marks and contour lines; the same for dry ground and for a river's bottom.
+uniform sampler2D ground_colour; // baked: colour times light
+uniform sampler2D edit_mask;     // 0 lowered, 0.5 untouched, 1 raised
+
+const vec3 RAISED = vec3(0.93, 0.45, 0.10);
+const vec3 LOWERED = vec3(0.16, 0.36, 0.85);
+
+vec3 ground_at(vec2 uv, float elevation) {
+    vec3 colour = texture(ground_colour, uv).rgb;
+    float mark = texture(edit_mask, uv).r * (255.0 / 127.0) - 128.0 / 127.0;
+    float light = 0.45 + 0.75 * dot(colour, vec3(0.299, 0.587, 0.114));
+    colour = mix(colour, (mark > 0.0 ? RAISED : LOWERED) * light, 0.8 * clamp(abs(mark), 0.0, 1.0));
+    if (vertical.z > 0.0) {
+        float turns = elevation / vertical.z;
+        float slope = max(fwidth(turns), 1e-6);
+        float line = 1.0 - smoothstep(0.5, 1.3, abs(fract(turns - 0.5) - 0.5) / slope);
+        float index = abs(fract(turns / 5.0 - 0.5) - 0.5) * 5.0 < 0.5 ? 1.0 : 0.0;
+        // Lines closer than a few pixels would only darken the slope.
+        line *= (0.30 + 0.30 * index) * (1.0 - smoothstep(0.15, 0.4, slope));
+        colour = mix(colour, vec3(0.23, 0.15, 0.08), line);
+    }
+    return colour;
+}

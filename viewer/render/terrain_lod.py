@@ -1,0 +1,62 @@
+"""Keeps block errors, bounds and the selector in step with the heightfield."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from viewer.lod import BlockSelector, BlockTiling, Selection, SwitchTable, block_bounds, block_errors
+from viewer.render.frame_inputs import FrameInputs
+from viewer.world.coordinates import WorldFrame
+from viewer.world.heightfield import Heightfield, Rect
+
+__all__ = ["TerrainLod"]
+
+
+class TerrainLod:
+    """Level of detail of one heightfield."""
+
+    def __init__(self, heightfield: Heightfield, tiling: BlockTiling) -> None:
+        """Compute all errors."""
+        self._heightfield = heightfield
+        self.tiling = tiling
+        self._bounds = block_bounds(heightfield.z_b, tiling)
+        self._table = SwitchTable(block_errors(heightfield.z_b, tiling))
+        self._selector = BlockSelector(tiling, heightfield.grid.dx, self._table, self._bounds)
+
+    def refresh(self, dirty: Rect) -> None:
+        """Redo errors and bounds of the blocks that hold a vertex of a rectangle of cells."""
+        tiling = self.tiling
+        b_row0, b_col0, b_row1, b_col1 = blocks = tiling.blocks_touching(dirty)
+        row0, row1 = int(tiling.row_start[b_row0]), int(tiling.row_end[b_row1 - 1]) + 1
+        col0, col1 = int(tiling.col_start[b_col0]), int(tiling.col_end[b_col1 - 1]) + 1
+        z = self._heightfield.z_b[row0:row1, col0:col1]
+        part = BlockTiling(*z.shape, tiling.block_size)
+        bounds = block_bounds(z, part)
+        window = (slice(b_row0, b_row1), slice(b_col0, b_col1))
+        self._bounds.z_min[window], self._bounds.z_max[window] = bounds.z_min, bounds.z_max
+        self._table.update(block_errors(z, part), blocks)
+
+    def select(
+        self,
+        inputs: FrameInputs,
+        frame: WorldFrame,
+        size: tuple[int, int],
+        states: npt.NDArray[np.uint8] | None,
+        depth_max: float,
+    ) -> Selection:
+        """Choose the blocks of a picture."""
+        options = inputs.options
+        return self._selector.select(
+            inputs.camera,
+            frame,
+            size,
+            options.tau_px,
+            states=states,
+            depth_max=depth_max,
+            water_spacing_px=options.water_spacing_px,
+            partial_spacing_px=options.partial_spacing_px,
+            cull=options.cull,
+            cull_covered_terrain=options.cull_covered_terrain,
+            full_mesh=options.full_mesh,
+        )

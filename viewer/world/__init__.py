@@ -1,0 +1,45 @@
+"""The world of the viewer: pure data and time; NumPy only, no OpenGL, no sockets."""
+
+from viewer.world.camera import Camera, GroundHeight, overview
+from viewer.world.coordinates import Point, WorldFrame
+from viewer.world.depth_classes import (
+    DEPTH_CLASS_COLOURS,
+    DEPTH_CLASS_LIMITS,
+    depth_class,
+    depth_class_labels,
+)
+from viewer.world.edit_document import EditDocument, EditPreview
+from viewer.world.frame_cache import FrameCache
+from viewer.world.frustum import Frustum
+from viewer.world.heightfield import Heightfield, Rect, union_rect
+from viewer.world.orbit_motion import Flight, Move, OrbitMotion
+from viewer.world.playback_clock import PlaybackClock
+from viewer.world.probe import ProbeReading, probe
+from viewer.world.water_timeline import Bracket, WaterTimeline
+
+__all__ = [
+    "DEPTH_CLASS_COLOURS",
+    "DEPTH_CLASS_LIMITS",
+    "Bracket",
+    "Camera",
+    "EditDocument",
+    "EditPreview",
+    "Flight",
+    "FrameCache",
+    "Frustum",
+    "GroundHeight",
+    "Heightfield",
+    "Move",
+    "OrbitMotion",
+    "PlaybackClock",
+    "Point",
+    "ProbeReading",
+    "Rect",
+    "WaterTimeline",
+    "WorldFrame",
+    "depth_class",
+    "depth_class_labels",
+    "overview",
+    "probe",
+    "union_rect",
+]

@@ -1,0 +1,117 @@
+"""The user's terrain edits as the viewer knows them: the service's list, and the edit being drawn.
+
+The preview goes through `protocol.apply_edits`, the very code the solver runs, so what is shown before
+Recalculate is what will be computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from protocol import Edit, GridGeometry, apply_edits
+from viewer.world.heightfield import Rect, union_rect
+
+__all__ = ["EditDocument", "EditPreview"]
+
+
+@dataclass(frozen=True)
+class EditPreview:
+    """The ground with all edits on it."""
+
+    z_b: npt.NDArray[np.float32]
+    """Edited bed [m, datum-relative], shape [nrows, ncols]."""
+    sign: npt.NDArray[np.int8]
+    """+1 where the ground is raised, -1 where it is lowered, 0 elsewhere, shape [nrows, ncols]."""
+    dirty: Rect | None
+    """What changed since the preview before: first row, first column, end row, end column; None for nothing."""
+    revision: int
+    """Counts the previews; equal numbers mean equal ground."""
+
+
+class EditDocument:
+    """Mirror of the service's edit list, with an edit in progress on top.
+
+    Attributes:
+        revision: revision of the service's list.
+        edits: the service's list, in order.
+        can_undo: whether the service has something to undo.
+        can_redo: whether it has something to redo.
+    """
+
+    def __init__(self, grid: GridGeometry, z_b_base: npt.NDArray[np.float32]) -> None:
+        """Begin with the base bed and no edit.
+
+        Args:
+            grid: geometry of the raster.
+            z_b_base: the case's bed before any edit [m, datum-relative], shape [nrows, ncols].
+        """
+        self._grid = grid
+        self._base = np.ascontiguousarray(z_b_base, dtype=np.float32)
+        self._committed = self._base
+        self._committed_dirty: Rect | None = None
+        self._stale: Rect | None = None
+        self._draft: Edit | None = None
+        self._draft_dirty: Rect | None = None
+        self._draft_changed = False
+        self.revision = 0
+        self.edits: tuple[Edit, ...] = ()
+        self.can_undo = False
+        self.can_redo = False
+        self._preview = EditPreview(self._base, np.zeros(self._base.shape, dtype=np.int8), None, 0)
+
+    @property
+    def base(self) -> npt.NDArray[np.float32]:
+        """The bed before any edit [m]."""
+        return self._base
+
+    @property
+    def draft(self) -> Edit | None:
+        """The edit being drawn, if any."""
+        return self._draft
+
+    def mirror(self, revision: int, edits: Sequence[Edit], can_undo: bool, can_redo: bool) -> None:
+        """Take over the list that the service reports.
+
+        Raises:
+            protocol.EditError: if an edit does not fit the terrain.
+        """
+        edited = apply_edits(self._base, list(edits), self._grid)
+        self.revision, self.edits = revision, tuple(edits)
+        self.can_undo, self.can_redo = can_undo, can_redo
+        self._stale = union_rect(self._stale, union_rect(self._committed_dirty, edited.dirty))
+        self._committed, self._committed_dirty = edited.z_b, edited.dirty
+
+    def set_draft(self, edit: Edit | None) -> None:
+        """Set, replace or (with None) drop the edit being drawn."""
+        self._draft_changed = self._draft_changed or edit != self._draft
+        self._draft = edit
+
+    def bed_of(self, edits: Sequence[Edit]) -> npt.NDArray[np.float32]:
+        """The bed of a run that was computed with a list of edits [m, datum-relative]."""
+        return self._base if not edits else apply_edits(self._base, list(edits), self._grid).z_b
+
+    def preview(self) -> EditPreview:
+        """The ground with the service's edits and the draft; the same object while nothing changed.
+
+        Raises:
+            protocol.EditError: if the draft does not fit the terrain.
+        """
+        if self._stale is None and not self._draft_changed:
+            return self._preview
+        z_b, draft_dirty = self._committed, None
+        if self._draft is not None:
+            edited = apply_edits(self._committed, [self._draft], self._grid)
+            z_b, draft_dirty = edited.z_b, edited.dirty
+        dirty = union_rect(self._stale, union_rect(self._draft_dirty, draft_dirty))
+        self._stale, self._draft_dirty, self._draft_changed = None, draft_dirty, False
+        if dirty is None:
+            return self._preview
+        sign = self._preview.sign.copy()
+        window = (slice(dirty[0], dirty[2]), slice(dirty[1], dirty[3]))
+        sign[window] = np.sign(z_b[window] - self._base[window]).astype(np.int8)
+        self._preview = EditPreview(z_b, sign, dirty, self._preview.revision + 1)
+        return self._preview

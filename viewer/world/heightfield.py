@@ -1,0 +1,129 @@
+"""The ground on the CPU: one elevation per cell centre, sampled between centres.
+
+The array is [row, col] with row 0 in the south; z is relative to the case datum. A revision number and the
+rectangles changed since a revision tell the textures and the level-of-detail errors what to refresh.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from protocol import GridGeometry
+from viewer.errors import TerrainDataError
+from viewer.world.coordinates import WorldFrame
+
+__all__ = ["Heightfield", "Rect", "union_rect"]
+
+Rect = tuple[int, int, int, int]
+"""A rectangle of cells: first row, first column, end row, end column (ends exclusive)."""
+
+_HISTORY_LENGTH = 64
+
+
+def union_rect(first: Rect | None, second: Rect | None) -> Rect | None:
+    """The smallest rectangle that holds both; None stands for an empty one."""
+    if first is None or second is None:
+        return first if second is None else second
+    return (
+        min(first[0], second[0]),
+        min(first[1], second[1]),
+        max(first[2], second[2]),
+        max(first[3], second[3]),
+    )
+
+
+class Heightfield:
+    """The ground as it is drawn now: the bed of the run with the user's edits on it."""
+
+    def __init__(self, grid: GridGeometry, z_b: npt.ArrayLike) -> None:
+        """Take the first bed.
+
+        Args:
+            grid: the geometry of the raster.
+            z_b: bed elevation [m, datum-relative], shape [nrows, ncols], finite.
+
+        Raises:
+            TerrainDataError: if the shape is not the grid's or a value is not finite.
+        """
+        self.grid = grid
+        self.z_b = self._checked(z_b)
+        self.revision = 0
+        self._changes: list[tuple[int, Rect]] = []
+        self.z_min = float(self.z_b.min())
+        self.z_max = float(self.z_b.max())
+        self.frame = WorldFrame.of_grid(grid, z_ref=self.z_min)
+
+    def set(self, z_b: npt.ArrayLike, dirty: Rect | None = None) -> None:
+        """Replace the bed.
+
+        Args:
+            z_b: the new bed [m], shape [nrows, ncols].
+            dirty: the rectangle outside of which nothing changed; None means everywhere.
+
+        Raises:
+            TerrainDataError: as in the constructor.
+        """
+        self.z_b = self._checked(z_b)
+        nrows, ncols = self.z_b.shape
+        rect = (0, 0, nrows, ncols) if dirty is None else dirty
+        if rect[2] <= rect[0] or rect[3] <= rect[1]:
+            return
+        self.revision += 1
+        self._changes.append((self.revision, rect))
+        del self._changes[:-_HISTORY_LENGTH]
+        changed = self.z_b[rect[0] : rect[2], rect[1] : rect[3]]
+        self.z_min = min(self.z_min, float(changed.min()))
+        self.z_max = max(self.z_max, float(changed.max()))
+
+    def changed_since(self, revision: int) -> Rect | None:
+        """The rectangle that holds every change made after a revision; None if nothing changed."""
+        if revision >= self.revision:
+            return None
+        later = [rect for number, rect in self._changes if number > revision]
+        if len(later) < self.revision - revision:
+            return (0, 0, *self.z_b.shape)
+        rect: Rect | None = None
+        for change in later:
+            rect = union_rect(rect, change)
+        return rect
+
+    def sample(self, x: Any, y: Any) -> Any:
+        """Ground elevation [m, datum-relative], bilinear between cell centres, clamped at the border.
+
+        Args:
+            x: easting [m], scalar or array.
+            y: northing [m], scalar or array of the same shape.
+        """
+        nrows, ncols = self.z_b.shape
+        grid = self.grid
+        col = np.clip((np.asarray(x, dtype=np.float64) - grid.x0) / grid.dx - 0.5, 0.0, ncols - 1.0)
+        row = np.clip((np.asarray(y, dtype=np.float64) - grid.y0) / grid.dx - 0.5, 0.0, nrows - 1.0)
+        col0 = np.minimum(col.astype(np.int64), max(ncols - 2, 0))
+        row0 = np.minimum(row.astype(np.int64), max(nrows - 2, 0))
+        col1 = np.minimum(col0 + 1, ncols - 1)
+        row1 = np.minimum(row0 + 1, nrows - 1)
+        s, t = col - col0, row - row0
+        z = self.z_b
+        south = z[row0, col0] * (1.0 - s) + z[row0, col1] * s
+        north = z[row1, col0] * (1.0 - s) + z[row1, col1] * s
+        value = south * (1.0 - t) + north * t
+        return float(value) if np.ndim(value) == 0 else value
+
+    def world_height(self, x_world: Any, z_world: Any, frame: WorldFrame | None = None) -> Any:
+        """Height of the ground in the world [m] above a world position (scalars or arrays)."""
+        frame = self.frame if frame is None else frame
+        return frame.height(self.sample(frame.x_centre + x_world, frame.y_centre - z_world))
+
+    def _checked(self, z_b: npt.ArrayLike) -> npt.NDArray[np.float32]:
+        array = np.ascontiguousarray(z_b, dtype=np.float32)
+        expected = (self.grid.nrows, self.grid.ncols)
+        if array.shape != expected:
+            raise TerrainDataError(f"terrain has shape {array.shape}, the grid asks for {expected}")
+        if not np.isfinite(array).all():
+            raise TerrainDataError(
+                "terrain holds elevations that are not finite; fill or wall them off first"
+            )
+        return array
