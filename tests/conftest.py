@@ -46,7 +46,9 @@ def display() -> Iterator[str]:
         pytest.skip("Xvfb is not installed, so no window can be tried (`./fev test` installs or names it)")
     ready, started = os.pipe()
     command = ["Xvfb", "-displayfd", str(started), "-screen", "0", "1600x1000x24", "-nolisten", "tcp"]
-    server = subprocess.Popen(command, pass_fds=(started,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    server = subprocess.Popen(
+        command, pass_fds=(started,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
     os.close(started)
     try:
         with os.fdopen(ready) as pipe:
