@@ -1,4 +1,4 @@
-"""What every test relies on: one thread for BLAS, one seed, floating-point errors raised, a display for windows.
+"""What every test relies on: one BLAS thread, one seed, floating-point errors raised, a display for windows.
 
 The environment is set while this file is imported, before NumPy, Warp and Qt read it.
 """
@@ -38,7 +38,7 @@ def _numpy_errors_are_raised() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def display() -> Iterator[str]:
-    """Name of an X display: the one given, else a virtual one for the session; "" where the system needs none."""
+    """Name of an X display: the one given, else a virtual one; "" where the system has no X."""
     if not sys.platform.startswith("linux") or "DISPLAY" in os.environ:
         yield os.environ.get("DISPLAY", "")
         return
@@ -65,5 +65,5 @@ def display() -> Iterator[str]:
 
 @pytest.fixture(scope="session")
 def qapp_args(display: str) -> list[str]:
-    """Arguments of the QApplication that pytest-qt makes; asking for the display makes sure that there is one."""
+    """Arguments of the QApplication that pytest-qt makes; asking for the display makes sure of one."""
     return ["fev"]
