@@ -109,7 +109,7 @@ class BlockLayout:
         rows = operation.reduceat(words, starts, axis=0)
         rows[:-1] = operation(rows[:-1], words[starts[1:]])
         blocks = rows[:, : self.block_cols].copy()
-        # A block's eastern edge is bit 0 of the next word, spread over a word so that it counts as all or none.
+        # A block's eastern edge is bit 0 of the next word, spread so that it counts as all or none.
         edge = np.where(rows[:, 1:word_count] & 1, np.uint32(0xFFFFFFFF), np.uint32(0))
         blocks[:, : word_count - 1] = operation(blocks[:, : word_count - 1], edge)
         return blocks

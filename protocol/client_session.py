@@ -158,7 +158,7 @@ class ClientSession:
         if isinstance(message, Welcome) and self._hello_sent:
             if message.protocol not in SUPPORTED_VERSIONS:
                 raise VersionMismatch(
-                    f"The service speaks {message.protocol!r}; {', '.join(SUPPORTED_VERSIONS)} is spoken here."
+                    f"The service chose {message.protocol!r}; {', '.join(SUPPORTED_VERSIONS)} is spoken here."
                 )
             self.welcome = message
             self.state = SessionState.OPEN

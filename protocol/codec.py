@@ -12,6 +12,7 @@ import msgpack  # type: ignore[import-untyped]
 import msgspec
 
 from protocol.errors import InvalidMessage, MalformedMessage, TooLarge, UnknownMessage
+from protocol.fields import plain
 from protocol.limits import (
     INBOUND_MAX_BYTES,
     INBOUND_MAX_ITEMS,
@@ -38,8 +39,7 @@ FRAME_TYPES: dict[str, type[Message]] = {operation(Frame): Frame}
 
 def pack(message: Message) -> bytes:
     """A message as msgpack: a map of its fields, `op` first, in the order of their definition."""
-    fields = msgspec.to_builtins(message, builtin_types=(bytes,))
-    packed: bytes = msgpack.packb(fields, use_bin_type=True)
+    packed: bytes = msgpack.packb(plain(message), use_bin_type=True)
     return packed
 
 

@@ -7,6 +7,7 @@ import re
 from typing import Annotated, Any
 
 import msgspec
+import numpy as np
 from msgspec import Meta
 
 from protocol.limits import (
@@ -50,6 +51,17 @@ def all_finite(value: Any) -> bool:
     if isinstance(value, dict):
         return all(map(all_finite, value.values()))
     return True
+
+
+def plain(record: msgspec.Struct) -> Any:
+    """Maps, lists and numbers that msgpack knows, of a record whose numbers may be NumPy scalars."""
+    return msgspec.to_builtins(record, builtin_types=(bytes,), enc_hook=_plain_scalar)
+
+
+def _plain_scalar(value: Any) -> Any:
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} cannot be sent")
 
 
 class WireStruct(msgspec.Struct, frozen=True):

@@ -1,8 +1,8 @@
 """Frames to bytes and back.
 
-A group of up to 32 frames shares one key frame and one scale. The payload covers the cells owned by blocks that
-are not dry, in row-major order, as little-endian uint16: q for a key frame, (q - q_key) mod 65536 for a delta.
-A delta needs its key frame and nothing else, so that any other frame may be dropped.
+A group of up to 32 frames shares one key frame and one scale. The payload covers the cells owned by blocks
+that are not dry, in row-major order, as little-endian uint16: q for a key frame, (q - q_key) mod 65536 for a
+delta. A delta needs its key frame and nothing else, so that any other frame may be dropped.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class FrameEncoder:
         self._key_q: UInt16Array = np.zeros((0, 0), dtype=np.uint16)
 
     def choose_scale(self, h_max: float) -> float:
-        """Scale [m] for the next frame: the group's while h_max [m] fits, else a coarser one (a key follows)."""
+        """Scale [m] for the next frame: the group's while h_max [m] fits, else a coarser one."""
         return self.scale if h_max <= Q_MAX * self.scale else choose_depth_scale(h_max)
 
     def encode(
@@ -78,7 +78,7 @@ class FrameEncoder:
             index: frame index.
             time: simulated time [s].
             revision: revision of the edits in the bed.
-            water: depth h [m] of shape [nrows, ncols]; or (q, states) as `quantise_depth` and `classify` give them.
+            water: depth h [m], shape [nrows, ncols]; or (q, states) as `quantise_depth` and `classify` give.
             scale: scale [m] of q; by default the group's. Another one than the group's makes a key frame.
             force_key: whether to make a key frame in any case.
 

@@ -24,6 +24,9 @@ MAX_FRAME_BYTES = 2 * MAX_CELLS + (1 << 20)
 MAX_TERRAIN_BYTES = 4 * MAX_CELLS + (1 << 20)
 """Largest compressed terrain, put together from its parts."""
 
+MAX_STATE_BYTES = 1 << 15
+"""Largest packed block states of one frame (two bits a block)."""
+
 MAX_PARTS = MAX_TERRAIN_BYTES // PART_BYTES + 1
 """Largest number of parts of one frame or terrain."""
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from msgspec import structs
+
 from protocol.client_session import SessionState
 from protocol.codec import operation, pack, unpack_client, unpack_frame
-from protocol.errors import Overloaded, ProtocolError, SequenceError
+from protocol.errors import Overloaded, ProtocolError, SequenceError, TooLarge
 from protocol.limits import (
     KEY_FRAMES_KEPT,
     MAX_CREDIT,
@@ -17,7 +19,6 @@ from protocol.messages import (
     CaseList,
     ClientMessage,
     Command,
-    Credit,
     Error,
     Frame,
     FramePart,
@@ -27,6 +28,7 @@ from protocol.messages import (
     Seek,
     ServerMessage,
     Subscribe,
+    SubscriptionMode,
     Unsubscribe,
     Welcome,
 )
@@ -46,7 +48,7 @@ class ServerSession:
         state: where the connection stands.
         hello: the client's first message, once it came.
         version: protocol version in force, once the hello came.
-        subscription: what the client wants to see; changed by `subscribe`, `seek`, `unsubscribe` and `move_to`.
+        subscription: what the client wants to see, after `subscribe`, `seek`, `unsubscribe` and `move_to`.
         credit: frames that may still be sent.
     """
 
@@ -57,7 +59,7 @@ class ServerSession:
         self.subscription: Subscribe | None = None
         self.credit = 0
         self._max_pending = max_pending
-        self._pending: set[int] = set()
+        self._pending: dict[int, Command | None] = {}
         self._last_id = 0
         self._keys_sent: list[tuple[str, int]] = []
 
@@ -79,11 +81,11 @@ class ServerSession:
     def receive(self, data: bytes) -> list[ClientMessage]:
         """What one message of the client means.
 
-        Credit, seek and subscription are taken note of before the message is handed on.
+        Credit counts at once; a command takes effect when its `ack` is sent.
 
         Raises:
-            ProtocolError: when the client breaks the protocol. Send what `refuse` makes of it, and close with its
-                close_code if it is fatal.
+            ProtocolError: when the client breaks the protocol. Send what `refuse` makes of it, and close
+                with its close_code if it is fatal.
         """
         if self.state is SessionState.CLOSED:
             raise SequenceError("A message came after the end of the session.")
@@ -97,7 +99,8 @@ class ServerSession:
             )
         if isinstance(message, Command):
             self._register(message)
-        self._follow(message)
+        elif self.subscription is not None:
+            self.credit = min(self.credit + message.frames, MAX_CREDIT)
         return [message]
 
     def send(self, message: ServerMessage) -> list[bytes]:
@@ -105,7 +108,7 @@ class ServerSession:
 
         Raises:
             SequenceError: when an answer is sent to a command that is not pending, or before the welcome.
-            ProtocolError: when the message is larger than a client accepts.
+            TooLarge: when the message is larger than a client accepts.
         """
         if isinstance(message, Frame):
             return self.send_frame(pack(message), message)
@@ -117,12 +120,12 @@ class ServerSession:
             self.state = SessionState.OPEN
         elif self.state is SessionState.CONNECTING and not isinstance(message, Error):
             raise SequenceError(f"{operation(message)!r} cannot be sent before the welcome.")
-        self._settle(message)
         packed = pack(message)
         if len(packed) > OUTBOUND_MAX_BYTES:
-            raise Overloaded(
+            raise TooLarge(
                 f"{operation(message)!r} has {len(packed)} bytes; {OUTBOUND_MAX_BYTES} are allowed."
             )
+        self._settle(message)
         return [packed]
 
     def refuse(self, error: ProtocolError) -> list[bytes]:
@@ -135,7 +138,7 @@ class ServerSession:
             )
             if message_id is not None:
                 self._last_id = message_id
-                self._pending.add(message_id)
+                self._pending[message_id] = None
         return self.send(Error(message_id, error.code, str(error)[:2000]))
 
     def needed_key(self, run: str, key_index: int) -> int | None:
@@ -180,15 +183,8 @@ class ServerSession:
         ]
 
     def move_to(self, run: str, index: int) -> None:
-        """Let the subscription go on with another run, as after `recalculate`; credit stays."""
-        if self.subscription is not None:
-            self.subscription = Subscribe(
-                id=self.subscription.id,
-                run=run,
-                from_index=index,
-                mode=self.subscription.mode,
-                credit=self.subscription.credit,
-            )
+        """Let the subscription go on with another run, as after `recalculate`; mode and credit stay."""
+        self._continue(run, index)
 
     def close(self) -> None:
         """End the session."""
@@ -211,33 +207,32 @@ class ServerSession:
                 f"{len(self._pending)} commands are unanswered; up to {self._max_pending} are allowed."
             )
         self._last_id = command.id
-        self._pending.add(command.id)
+        self._pending[command.id] = command
 
-    def _follow(self, message: Message) -> None:
-        """Take note of what the client wants to see and can take."""
-        if isinstance(message, Subscribe):
-            self.subscription = message
-            self.credit = message.credit
-        elif isinstance(message, Unsubscribe):
+    def _take_effect(self, command: Command) -> None:
+        """Take note of what the client is now to see."""
+        if isinstance(command, Subscribe):
+            self.subscription = command
+            self.credit = command.credit
+        elif isinstance(command, Unsubscribe):
             self.subscription = None
             self.credit = 0
-        elif isinstance(message, Credit) and self.subscription is not None:
-            self.credit = min(self.credit + message.frames, MAX_CREDIT)
-        elif isinstance(message, Seek) and self.subscription is not None:
-            self.subscription = Subscribe(
-                id=self.subscription.id,
-                run=message.run,
-                from_index=message.index,
-                mode="replay",
-                credit=self.subscription.credit,
-            )
+        elif isinstance(command, Seek) and self.subscription is not None:
+            self._continue(command.run, command.index, "replay")
+
+    def _continue(self, run: str, index: int, mode: SubscriptionMode | None = None) -> None:
+        if self.subscription is not None:
+            mode = self.subscription.mode if mode is None else mode
+            self.subscription = structs.replace(self.subscription, run=run, from_index=index, mode=mode)
 
     def _settle(self, message: Message) -> None:
         if not isinstance(message, Ack | Error | CaseList | RunList) or message.id is None:
             return
         if message.id not in self._pending:
             raise SequenceError(f"{operation(message)!r} answers command {message.id}, which is not pending.")
-        self._pending.remove(message.id)
+        command = self._pending.pop(message.id)
+        if isinstance(message, Ack) and command is not None:
+            self._take_effect(command)
 
     def _remember_key(self, name: tuple[str, int]) -> None:
         if name in self._keys_sent:

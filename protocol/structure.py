@@ -12,7 +12,7 @@ _SCALAR, _SIZED, _ARRAY, _MAP, _REFUSED = range(5)
 
 
 def _kind_of(lead: int) -> tuple[int, int, int]:
-    """Kind of a lead byte, bytes of the length field that follows, and the size or length if it is in the byte."""
+    """Kind of a lead byte, bytes of the length field after it, and the size or length it holds itself."""
     if lead <= 0x7F or lead >= 0xE0 or lead in (0xC0, 0xC2, 0xC3):
         return (_SCALAR, 0, 0)
     if lead <= 0x8F:

@@ -7,8 +7,9 @@ With s = +1 to raise and -1 to lower, m the magnitude and z the bed so far:
     replace, lower   z' = min(z, L)
     L = level - datum_offset, or z_ref + s m
 
-z_ref is the ground at the drawn vertices, interpolated at the nearest point of the line; for an area, its mean.
-L is computed in float64 and rounded to float32 once; everything else is float32. Edits apply in list order.
+z_ref is the ground at the drawn vertices, interpolated at the nearest point of the line, or its mean
+for an area. L is computed in float64 and rounded to float32 once; everything else is float32. Edits apply in
+list order.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ import msgspec
 from protocol.edits.model import Edit, EditLine
 from protocol.edits.raster import rasterise_edit
 from protocol.errors import EditError
+from protocol.fields import plain
 from protocol.grid import GridGeometry
 
 
@@ -23,16 +24,9 @@ def check_edit(edit: Edit, grid: GridGeometry) -> None:
         EditError: naming the edit, the field, its value and what is allowed.
     """
     try:
-        msgspec.convert(msgspec.to_builtins(edit), type(edit))
+        msgspec.convert(plain(edit), type(edit))
     except msgspec.ValidationError as error:
         raise EditError(f"Edit {edit.id!r} is not valid: {error}.") from error
-    xmin, ymin, xmax, ymax = grid.extent
-    for number, (x, y) in enumerate(edit.vertices):
-        if not grid.contains(x, y):
-            raise EditError(
-                f"Edit {edit.id!r} vertex {number} is at ({x:g}, {y:g}), outside the terrain;"
-                f" x from {xmin:g} to {xmax:g} and y from {ymin:g} to {ymax:g} is allowed."
-            )
     if isinstance(edit, EditLine) and len(set(edit.vertices)) < 2:
         raise EditError(
             f"Edit {edit.id!r} has all its vertices at one point; a line of some length is allowed."

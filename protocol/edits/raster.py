@@ -2,13 +2,13 @@
 
 Vertices are rounded to 1/1024 of a cell once; from there on everything that decides whether a cell is covered
 is integer arithmetic, so that two machines never disagree. In these units a cell centre is (1024 col + 512,
-1024 row + 512). A cell belongs to a line if its centre P is no further than r, half the width, from a segment:
+1024 row + 512). A cell belongs to a line if its centre P is within r, half the width, of a segment AB:
 
     d = B - A,  t = (P - A) . d,  L2 = d . d
     t <= 0:   |P - A|^2 <= r^2          t >= L2:   |P - B|^2 <= r^2
     else:     ((P - A) x d)^2 <= r^2 L2
 
-plus the Bresenham cells of the segment AB, so that a thin line has no gaps. A cell belongs to an area if its
+plus the Bresenham cells of the segment, so that a thin line has no gaps. A cell belongs to an area if its
 centre is inside by the even-odd rule; a centre on a western or southern side is inside.
 """
 
@@ -43,10 +43,10 @@ def rasterise_edit(edit: Edit, grid: GridGeometry) -> tuple[Int32Array, Int32Arr
 
     Returns:
         Rows, columns and, for a line, the position of the nearest point of the line: vertex number plus
-        fraction of the segment that follows (2.25 is a quarter of the way from vertex 2 to 3); none for an area.
+        fraction of the segment that follows (2.25 is a quarter past vertex 2); none for an area.
 
     Raises:
-        EditError: when the raster would look at more than `MAX_EDIT_WORK` cells.
+        EditError: when a vertex is outside the grid, or more than `MAX_EDIT_WORK` cells would be looked at.
     """
     if isinstance(edit, EditArea):
         rows, cols = _rasterise_area(edit, grid)
@@ -55,8 +55,21 @@ def rasterise_edit(edit: Edit, grid: GridGeometry) -> tuple[Int32Array, Int32Arr
 
 
 def to_units(edit: Edit, grid: GridGeometry) -> tuple[Int64Array, Int64Array]:
-    """Vertices (x, y) in 1/1024 of a cell from the grid's corner."""
+    """Vertices (x, y) in 1/1024 of a cell from the grid's corner.
+
+    Raises:
+        EditError: when a vertex is outside the grid.
+    """
     points = np.array(edit.vertices, dtype=np.float64)
+    xmin, ymin, xmax, ymax = grid.extent
+    # Written so that a vertex that is not a number counts as outside.
+    inside = (points >= (xmin, ymin)).all(axis=1) & (points <= (xmax, ymax)).all(axis=1)
+    if not inside.all():
+        number = int(np.argmin(inside))
+        raise EditError(
+            f"Edit {edit.id!r} vertex {number} is at ({points[number, 0]:g}, {points[number, 1]:g}), outside"
+            f" the terrain; x from {xmin:g} to {xmax:g} and y from {ymin:g} to {ymax:g} is allowed."
+        )
     x = np.rint((points[:, 0] - grid.x0) / grid.dx * SUBCELLS)
     y = np.rint((points[:, 1] - grid.y0) / grid.dx * SUBCELLS)
     return x.astype(np.int64), y.astype(np.int64)
@@ -71,7 +84,8 @@ def _ranges(counts: Int64Array) -> tuple[Int64Array, Int64Array]:
 
 def _rasterise_line(edit: EditLine, grid: GridGeometry) -> tuple[Int32Array, Int32Array, Float64Array]:
     x, y = to_units(edit, grid)
-    width = round(edit.width / grid.dx * SUBCELLS)
+    # Wider than twice round the grid changes nothing and would overflow.
+    width = round(min(edit.width / grid.dx, 2.0 * (grid.nrows + grid.ncols)) * SUBCELLS)
     ax, ay, bx, by = x[:-1], y[:-1], x[1:], y[1:]
     thick = _capsule_cells(edit, grid, width, ax, ay, bx, by)
     thin = _bresenham_cells(ax, ay, bx, by)
@@ -155,8 +169,8 @@ def _bresenham_cells(
     steps = np.maximum(np.abs(dcol), np.abs(drow))
     segment, i = _ranges(steps + 1)
     steps = np.maximum(steps[segment], 1)
-    col = col0[segment] + (2 * i * dcol[segment] + steps) // (2 * steps)
-    row = row0[segment] + (2 * i * drow[segment] + steps) // (2 * steps)
+    col = col0[segment] + np.sign(dcol[segment]) * ((2 * i * np.abs(dcol[segment]) + steps) // (2 * steps))
+    row = row0[segment] + np.sign(drow[segment]) * ((2 * i * np.abs(drow[segment]) + steps) // (2 * steps))
     return segment, row, col
 
 
@@ -170,18 +184,19 @@ def _rasterise_area(edit: EditArea, grid: GridGeometry) -> tuple[Int32Array, Int
     row_end = np.clip(-((HALF - by) // SUBCELLS), 0, grid.nrows)
     counts = row_end - row_first
     top, bottom = int(row_end.max()), int(row_first.min())
-    _check_work(edit, max(int(counts.sum()), (top - bottom) * grid.ncols))
+    left, right = int(x.min()) // SUBCELLS, min(int(x.max()) // SUBCELLS + 1, grid.ncols)
+    _check_work(edit, max(int(counts.sum()), (top - bottom) * (right - left)))
     edge, offset = _ranges(counts)
     row = row_first[edge] + offset
     # First column whose centre is not west of the crossing, by exact division.
     dy = by[edge] - ay[edge]
     numerator = (ax[edge] - HALF) * dy + (row * SUBCELLS + HALF - ay[edge]) * (bx[edge] - ax[edge])
-    col = np.clip(-((-numerator) // (SUBCELLS * dy)), 0, grid.ncols)
-    toggles = np.zeros((max(top - bottom, 0), grid.ncols + 1), dtype=np.int32)
-    np.add.at(toggles, (row - bottom, col), 1)
+    col = np.clip(-((-numerator) // (SUBCELLS * dy)), left, right)
+    toggles = np.zeros((top - bottom, right - left + 1), dtype=np.int32)
+    np.add.at(toggles, (row - bottom, col - left), 1)
     inside = np.cumsum(toggles[:, :-1], axis=1) % 2 == 1
     rows, cols = np.nonzero(inside)
-    return (rows + bottom).astype(np.int32), cols.astype(np.int32)
+    return (rows + bottom).astype(np.int32), (cols + left).astype(np.int32)
 
 
 def _check_work(edit: Edit, candidates: int) -> None:

@@ -1,4 +1,4 @@
-"""Every message, by direction. A message is a frozen `msgspec.Struct`; its operation is its name in snake case."""
+"""Every message, by direction. A message is a frozen `msgspec.Struct`; its `op` is its name in snake case."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ class RedoEdit(Command, frozen=True):
 
 
 class EditsChanged(Message, frozen=True):
-    """The working list of a run, after each change and for every watcher. The bed changes by `recalculate` only.
+    """The working list of a run, after each change, for every watcher. The bed changes by `recalculate` only.
 
     Attributes:
         run: id of the run.

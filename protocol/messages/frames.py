@@ -17,7 +17,7 @@ from protocol.fields import (
     RawSize,
     Revision,
 )
-from protocol.limits import MAX_CELLS, MAX_FRAME_BYTES, PART_BYTES
+from protocol.limits import MAX_FRAME_BYTES, MAX_STATE_BYTES, PART_BYTES
 
 
 class Frame(Message, frozen=True):
@@ -42,7 +42,7 @@ class Frame(Message, frozen=True):
     revision: Revision
     key_index: FrameIndex
     scale: Positive
-    states: Annotated[bytes, Meta(max_length=MAX_CELLS // 4)]
+    states: Annotated[bytes, Meta(max_length=MAX_STATE_BYTES)]
     raw_size: RawSize
     checksum: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)]
     payload: Annotated[bytes, Meta(max_length=MAX_FRAME_BYTES)]

@@ -35,7 +35,7 @@ class Hello(Message, frozen=True):
         versions: every version the client can speak.
         client: name and version of the client program, for logs.
         token: access token, when it was not in the Authorization header.
-        resume: what the client last knew; the service answers with `run_changed` and `edits_changed` of that run.
+        resume: what the client last knew; `run_changed` and `edits_changed` of that run follow the welcome.
         capabilities: what the client can do; unknown names are ignored.
     """
 

@@ -83,8 +83,8 @@ class StopRun(Command, frozen=True):
 class Recalculate(Command, frozen=True):
     """Branch a run at a frame with the working list of edits as its terrain.
 
-    The `ack` has result.run, the child's id; `run_changed` of the child follows, and the requester's subscription
-    goes on with the child from the branch index. Other clients get `run_branched` and stay.
+    The `ack` has result.run, the child's id; `run_changed` of the child follows, and the requester's
+    subscription goes on with the child from the branch index. Other clients get `run_branched` and stay.
 
     Attributes:
         run: id of the parent.

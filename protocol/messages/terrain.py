@@ -23,8 +23,8 @@ class GetTerrain(Command, frozen=True):
 class Terrain(Message, frozen=True):
     """One part of the base bed, before any edit.
 
-    All parts' data in order are one zstd frame of nrows x ncols little-endian float32: elevation [m] relative to
-    the grid's datum_offset, row 0 south.
+    All parts' data in order are one zstd frame of nrows x ncols little-endian float32: elevation [m] relative
+    to the grid's datum_offset, row 0 south.
 
     Attributes:
         id: id of the command.
