@@ -1,0 +1,30 @@
+"""The shallow-water solver: arrays and numbers in, arrays and numbers out; no files, no network."""
+
+from solver_service.errors import DeviceError, ModelError, SolverBlowUp
+from solver_service.numerics.bed_change import BedChange
+from solver_service.numerics.budget import VolumeBudget
+from solver_service.numerics.device import device_names, pick_device, warm_kernels
+from solver_service.numerics.gauges import GaugeSeries
+from solver_service.numerics.model import EdgeBoundary, FloodModel, Source
+from solver_service.numerics.params import SolverParams
+from solver_service.numerics.snapshot import Maxima, Snapshot
+from solver_service.numerics.solver import ShallowWaterSolver
+
+__all__ = [
+    "BedChange",
+    "DeviceError",
+    "EdgeBoundary",
+    "FloodModel",
+    "GaugeSeries",
+    "Maxima",
+    "ModelError",
+    "ShallowWaterSolver",
+    "Snapshot",
+    "SolverBlowUp",
+    "SolverParams",
+    "Source",
+    "VolumeBudget",
+    "device_names",
+    "pick_device",
+    "warm_kernels",
+]

@@ -1,0 +1,97 @@
+"""New state of a cell from its face fluxes, and the largest values seen.
+
+    h'  = h - dt/dx (F_e - F_w + G_n - G_s)
+    hu' = hu - dt/dx (F_e - F_w + G_n - G_s + g h (eta_e - eta_w))           (hv' alike), then friction
+
+The momentum fluxes are relative to the cell's own pressure (see `riemann`), so what remains of pressure and bed
+slope inside the cell is g h (eta_e - eta_w), exactly zero when the reconstructed surface is level.
+
+Hazard is the UK rating HR = h (|u| + 0.5) + DF, DF = 0.5 for h <= 0.25 m, else 1 [Defra2006]; speeds count for the
+maxima only where h > 0.05 m.
+"""
+
+import warp as wp
+
+from solver_service.numerics.friction import GRAVITY, friction_factor
+
+DEPTH_SPEED_COUNTS = wp.constant(0.05)
+"""Depth above which a speed counts for the maxima [m]."""
+
+maxima = wp.types.vector(length=7, dtype=wp.float32)
+"""h, time of it, speed, h speed, hazard, arrival time, wave speed."""
+
+
+@wp.func
+def update_cell(
+    h: float,
+    u: float,
+    v: float,
+    h_p: float,
+    e_x: float,
+    e_y: float,
+    mass_e: float,
+    normal_e: float,
+    tangential_e: float,
+    mass_w: float,
+    normal_w: float,
+    tangential_w: float,
+    mass_n: float,
+    normal_n: float,
+    tangential_n: float,
+    mass_s: float,
+    normal_s: float,
+    tangential_s: float,
+    drag: float,
+    dt: float,
+    dx: float,
+    depth_dry: float,
+) -> wp.vec4:
+    """Depth, velocities and speed after the step; `e_x`, `e_y` are half the differences of eta inside the cell."""
+    r = dt / dx
+    h_new = h - r * ((mass_e - mass_w) + (mass_n - mass_s))
+    pull = 2.0 * GRAVITY * h_p
+    hu = h * u - r * (((normal_e - normal_w) + (tangential_n - tangential_s)) + pull * e_x)
+    hv = h * v - r * (((tangential_e - tangential_w) + (normal_n - normal_s)) + pull * e_y)
+    h_floor = wp.max(h_new, depth_dry)
+    u_free = hu / h_floor
+    v_free = hv / h_floor
+    speed = wp.sqrt(u_free * u_free + v_free * v_free)
+    factor = friction_factor(h_floor, speed, drag, dt)
+    moving = h_new > depth_dry
+    return wp.vec4(
+        h_new,
+        wp.where(moving, u_free * factor, 0.0),
+        wp.where(moving, v_free * factor, 0.0),
+        wp.where(moving, speed * factor, 0.0),
+    )
+
+
+@wp.func
+def widen_maxima(
+    h: float,
+    u: float,
+    v: float,
+    speed: float,
+    time: float,
+    depth_arrival: float,
+    h_max: float,
+    h_max_time: float,
+    speed_max: float,
+    discharge_max: float,
+    hazard_max: float,
+    arrival: float,
+) -> maxima:
+    """Maxima that take in a new state; the wave speed is huge where the state is not finite."""
+    counted = wp.where(h > DEPTH_SPEED_COUNTS, speed, 0.0)
+    hazard = h * (counted + 0.5) + wp.where(h > 0.25, 1.0, 0.5)
+    hazard = wp.where(h > depth_arrival, hazard, 0.0)
+    wave = wp.max(wp.abs(u), wp.abs(v)) + wp.sqrt(GRAVITY * h)
+    return maxima(
+        wp.max(h_max, h),
+        wp.where(h > h_max, time, h_max_time),
+        wp.max(speed_max, counted),
+        wp.max(discharge_max, h * counted),
+        wp.max(hazard_max, hazard),
+        wp.where(h > depth_arrival, wp.min(arrival, time), arrival),
+        wp.where(wave + speed < 1.0e30, wave, 3.0e38),
+    )

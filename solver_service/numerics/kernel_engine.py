@@ -1,0 +1,149 @@
+"""Steps by Warp kernels alone: the engine of CUDA devices, and the oracle of the row engine on the CPU.
+
+Sixteen steps follow one refresh of the tile list; this body is repeated while the device's own clock is short of the
+target (`wp.capture_while`; on CUDA captured once as a graph, so that the host waits for nothing in between). Steps
+after the landing find dt = 0 and copy the state, so that the body always ends in the buffer it began with.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import warp as wp
+
+from solver_service.numerics.active_tiles import REFRESH_STEPS
+from solver_service.numerics.clock_kernels import (
+    CLOCK_BEFORE,
+    CLOCK_LENGTH,
+    CLOCK_TARGET,
+    CLOCK_TIME,
+    COUNT_FAILED,
+    COUNT_LENGTH,
+    COUNT_STEPS,
+    begin_step,
+    decide_to_go_on,
+)
+from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
+from solver_service.numerics.gauges import DRAIN_STEPS
+from solver_service.numerics.ghost_kernels import fill_ghost_cells, ghost_cells
+from solver_service.numerics.step_kernels import step_active_tiles
+
+WAVE_SLOTS = 256
+CUDA_THREADS = 1 << 18
+CPU_THREADS = 1
+
+
+class KernelEngine(Engine):
+    """See the module; state is always in buffer 0 between calls."""
+
+    def __init__(self, parts: StepParts) -> None:
+        super().__init__(parts)
+        store = parts.store
+        device = store.device
+        self._device = device
+        self._is_cuda = wp.get_device(device).is_cuda
+        self._clock = wp.zeros(CLOCK_LENGTH, dtype=wp.float64, device=device)
+        self._counts = wp.zeros(COUNT_LENGTH, dtype=wp.int32, device=device)
+        self._go_on = wp.zeros(1, dtype=wp.int32, device=device)
+        self._wave_slots = wp.zeros(WAVE_SLOTS, dtype=wp.float32, device=device)
+        self._kinds = wp.array(parts.edge_kinds, dtype=wp.int32, device=device)
+        self._ghosts = wp.array(ghost_cells(store.nrows, store.ncols), dtype=wp.int32, device=device)
+        self._threads = CUDA_THREADS if self._is_cuda else CPU_THREADS
+        self._graph: wp.Graph | None = None
+
+    def state_changed(self) -> None:
+        """Refresh every tile before the next step."""
+        self.parts.tiles.reset()
+
+    def advance(self, target: float, should_stop: StopQuestion | None) -> bool:
+        """See `Engine.advance`; `should_stop` is asked every `DRAIN_STEPS` steps."""
+        self._upload(target)
+        while self.time < target:
+            if should_stop is not None and should_stop():
+                return False
+            self._launch_steps()
+            self._download()
+            self.parts.gauges.drain()
+        return True
+
+    def _upload(self, target: float) -> None:
+        clock = np.zeros(CLOCK_LENGTH)
+        clock[[int(CLOCK_TIME), int(CLOCK_BEFORE), int(CLOCK_TARGET)]] = self.time, self.time, target
+        self._clock.assign(clock)
+        slots = np.zeros(WAVE_SLOTS, np.float32)
+        slots[0] = self.wave_speed
+        self._wave_slots.assign(slots)
+        self._counts.zero_()
+
+    def _download(self) -> None:
+        counts = self._counts.numpy()
+        clock = self._clock.numpy()
+        self.time = float(clock[int(CLOCK_TIME)])
+        if counts[int(COUNT_FAILED)]:
+            raise StepCollapse
+        self.wave_speed = float(self._wave_slots.numpy().max())
+
+    def _launch_steps(self) -> None:
+        before = int(self._counts.numpy()[int(COUNT_STEPS)])
+        self._counts.assign(np.array([before, before + DRAIN_STEPS, 0], np.int32))
+        self._decide()
+        if not self._is_cuda:
+            wp.capture_while(self._go_on, self._take_steps)
+        else:
+            if self._graph is None:
+                wp.load_module(device=self._device)
+                with wp.ScopedCapture(device=self._device) as capture:
+                    wp.capture_while(self._go_on, self._take_steps)
+                self._graph = capture.graph
+            wp.capture_launch(self._graph)
+        self.step_count += int(self._counts.numpy()[int(COUNT_STEPS)]) - before
+
+    def _decide(self) -> None:
+        wp.launch(
+            decide_to_go_on,
+            dim=1,
+            inputs=[self._clock, self._counts],
+            outputs=[self._go_on],
+            device=self._device,
+        )
+
+    def _take_steps(self) -> None:
+        self.parts.tiles.refresh(self.parts.store.fields[0])
+        for k in range(REFRESH_STEPS):
+            self._take_step(k % 2)
+        self._decide()
+
+    def _take_step(self, parity: int) -> None:
+        parts, device = self.parts, self._device
+        store = parts.store
+        fields = store.fields[parity]
+        wp.launch(
+            begin_step,
+            dim=1,
+            inputs=[parts.courant, parts.dt_max, parts.dt_min],
+            outputs=[self._wave_slots, self._clock, self._counts],
+            device=device,
+        )
+        wp.launch(
+            fill_ghost_cells,
+            dim=self._ghosts.shape[0],
+            inputs=[self._kinds, self._ghosts, store.nrows, store.ncols],
+            outputs=[fields.h, fields.u, fields.v],
+            device=device,
+        )
+        wp.launch(
+            step_active_tiles,
+            dim=self._threads,
+            inputs=[
+                fields,
+                parts.scheme,
+                self._clock,
+                parts.tiles.tiles,
+                parts.tiles.count,
+                parts.tiles.cols,
+                self._threads,
+            ],
+            outputs=[self._wave_slots],
+            device=device,
+        )
+        parts.forcing.apply(self._clock, fields)
+        parts.gauges.record(self._clock, fields)

@@ -1,0 +1,180 @@
+"""What does not move while a run goes on: grid, bed, roughness, edges, sources, rain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from solver_service.errors import ModelError
+from solver_service.numerics.fields import FloatRaster
+
+Edge = Literal["west", "east", "south", "north"]
+EDGES: tuple[Edge, ...] = ("west", "east", "south", "north")
+
+MANNING_MAX = 10.0
+"""Largest Manning roughness accepted [s m^(-1/3)]."""
+
+
+@dataclass(frozen=True)
+class EdgeBoundary:
+    """What happens along a part of an edge; where nothing is said stands a wall.
+
+    Raises:
+        ModelError: when edge, kind or range are not valid.
+    """
+
+    edge: Edge
+    """Side of the grid."""
+    kind: Literal["wall", "open"]
+    """A wall reflects, an open edge lets water leave and none enter."""
+    first: int
+    """First cell along the edge, counted from the south or the west."""
+    last: int
+    """One past the last cell."""
+
+    def __post_init__(self) -> None:
+        if self.edge not in EDGES:
+            raise ModelError(f"The boundary edge is {self.edge!r}; allowed are {', '.join(EDGES)}.")
+        if self.kind not in ("wall", "open"):
+            raise ModelError(f"The boundary kind is {self.kind!r}; allowed are wall and open.")
+        if not 0 <= self.first < self.last:
+            raise ModelError(
+                f"The boundary spans the cells {self.first} to {self.last}; 0 <= first < last is allowed."
+            )
+
+
+def check_series(what: str, times: npt.NDArray[np.float64], rates: npt.NDArray[np.float64]) -> None:
+    """Refuse a series that is not finite, not increasing in time, or negative.
+
+    Raises:
+        ModelError: naming the entry.
+    """
+    if times.ndim != 1 or times.shape != rates.shape or times.size == 0:
+        raise ModelError(
+            f"The series of {what} has {times.size} times and {rates.size} values; as many, at least 1."
+        )
+    for k, (time, rate) in enumerate(zip(times, rates, strict=True)):
+        if not (np.isfinite(time) and np.isfinite(rate) and rate >= 0.0):
+            raise ModelError(
+                f"Entry {k} of the series of {what} is {rate} at {time} s; a finite value >= 0 is allowed."
+            )
+        if k and time <= times[k - 1]:
+            raise ModelError(f"Entry {k} of the series of {what} is at {time} s, not after {times[k - 1]} s.")
+
+
+@dataclass(frozen=True)
+class Source:
+    """Water that enters in some cells, spread evenly over them.
+
+    Raises:
+        ModelError: when the series or the cells are not valid.
+    """
+
+    rows: npt.NDArray[np.int32]
+    """Rows of the cells, each cell once."""
+    cols: npt.NDArray[np.int32]
+    """Columns of the cells."""
+    times: npt.NDArray[np.float64]
+    """Times of the series [s], increasing; no inflow before the first."""
+    discharge: npt.NDArray[np.float64]
+    """Discharge at these times [m3/s], linear between, held after the last."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rows", np.atleast_1d(np.asarray(self.rows, np.int32)))
+        object.__setattr__(self, "cols", np.atleast_1d(np.asarray(self.cols, np.int32)))
+        object.__setattr__(self, "times", np.atleast_1d(np.asarray(self.times, np.float64)))
+        object.__setattr__(self, "discharge", np.atleast_1d(np.asarray(self.discharge, np.float64)))
+        check_series("a source's discharge", self.times, self.discharge)
+        if self.rows.ndim != 1 or self.rows.shape != self.cols.shape or self.rows.size == 0:
+            raise ModelError(
+                f"A source has {self.rows.size} rows and {self.cols.size} columns; as many, at least 1."
+            )
+        if len(set(zip(self.rows.tolist(), self.cols.tolist(), strict=True))) != self.rows.size:
+            raise ModelError("A source names a cell twice; each cell once is allowed.")
+
+
+@dataclass(frozen=True)
+class FloodModel:
+    """Everything about a flood that a solver needs, but for the water itself.
+
+    Rasters are [row, col] with row 0 in the south.
+
+    Raises:
+        ModelError: naming what is not valid, with its cell where there is one.
+    """
+
+    dx: float
+    """Cell side [m]."""
+    z_b: FloatRaster
+    """Bed elevation relative to the case datum [m], finite, float32 [nrows, ncols]."""
+    manning_n: float | FloatRaster
+    """Manning roughness [s m^(-1/3)], one value or a raster."""
+    boundaries: tuple[EdgeBoundary, ...] = ()
+    """Edge segments; later ones win where they overlap."""
+    sources: tuple[Source, ...] = ()
+    """Point and disc inflows."""
+    rain: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]] | None = None
+    """Times [s] and rates [m/s] of rain on every cell that is not blocked."""
+    blocked: npt.NDArray[np.bool_] | None = field(default=None)
+    """Cells outside the computation (no data): walls."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "z_b", np.ascontiguousarray(self.z_b, np.float32))
+        if self.z_b.ndim != 2 or min(self.z_b.shape) < 2:
+            raise ModelError(
+                f"The bed has the shape {self.z_b.shape}; two dimensions of at least 2 cells are allowed."
+            )
+        if not (np.isfinite(self.dx) and self.dx > 0.0):
+            raise ModelError(f"The cell size is {self.dx!r}; a positive number of metres is allowed.")
+        self._check_bed_and_roughness()
+        for boundary in self.boundaries:
+            length = self.z_b.shape[0 if boundary.edge in ("west", "east") else 1]
+            if boundary.last > length:
+                raise ModelError(
+                    f"The {boundary.edge} boundary ends at cell {boundary.last}; the edge has {length}."
+                )
+        for source in self.sources:
+            self._check_source(source)
+        if self.rain is not None:
+            times, rates = (np.atleast_1d(np.asarray(part, np.float64)) for part in self.rain)
+            check_series("rain", times, rates)
+            object.__setattr__(self, "rain", (times, rates))
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(nrows, ncols)."""
+        return (self.z_b.shape[0], self.z_b.shape[1])
+
+    def _check_bed_and_roughness(self) -> None:
+        if self.blocked is not None and self.blocked.shape != self.z_b.shape:
+            raise ModelError(
+                f"The blocked mask has the shape {self.blocked.shape}; the bed's is {self.z_b.shape}."
+            )
+        bad = np.argwhere(~np.isfinite(self.z_b))
+        if bad.size:
+            row, col = bad[0]
+            raise ModelError(
+                f"The bed is {self.z_b[row, col]} in cell (row {row}, column {col}); finite is allowed."
+            )
+        n = np.asarray(self.manning_n, np.float32)
+        if n.ndim not in (0, 2) or (n.ndim == 2 and n.shape != self.z_b.shape):
+            raise ModelError(f"The roughness has the shape {n.shape}; the bed's is {self.z_b.shape}.")
+        wrong = np.argwhere(np.atleast_2d(~((n >= 0.0) & (n <= MANNING_MAX))))
+        if wrong.size:
+            value = np.atleast_2d(n)[tuple(wrong[0])]
+            raise ModelError(
+                f"The roughness is {value} in cell {tuple(wrong[0].tolist())}; 0 to {MANNING_MAX} is allowed."
+            )
+
+    def _check_source(self, source: Source) -> None:
+        nrows, ncols = self.shape
+        for row, col in zip(source.rows.tolist(), source.cols.tolist(), strict=True):
+            if not (0 <= row < nrows and 0 <= col < ncols):
+                raise ModelError(
+                    f"A source stands in cell (row {row}, column {col}), off the {nrows} x {ncols} grid."
+                )
+            if self.blocked is not None and self.blocked[row, col]:
+                raise ModelError(f"A source stands in cell (row {row}, column {col}), which has no data.")

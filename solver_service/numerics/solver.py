@@ -1,0 +1,400 @@
+"""The solver: a model, the water on it, and time."""
+
+from __future__ import annotations
+
+import logging
+import math
+
+import numpy as np
+import numpy.typing as npt
+import warp as wp
+
+from solver_service.errors import ModelError, SolverBlowUp
+from solver_service.numerics.active_tiles import ActiveTiles
+from solver_service.numerics.bed_change import BedChange, change_water, check_bed
+from solver_service.numerics.budget import VolumeBudget, edge_outflow, stored_volume
+from solver_service.numerics.device import pick_device, thread_count, warm_kernels
+from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
+from solver_service.numerics.fields import MAXIMA_NAMES, NEVER, STATE_NAMES, FieldStore, FloatRaster, Scheme
+from solver_service.numerics.forcing import Forcing, forced_cells
+from solver_service.numerics.friction import GRAVITY
+from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
+from solver_service.numerics.ghost_kernels import OPEN, WALL, pad_bed
+from solver_service.numerics.kernel_engine import KernelEngine
+from solver_service.numerics.model import EDGES, FloodModel
+from solver_service.numerics.params import SolverParams
+from solver_service.numerics.row_engine import RowEngine, rows_compile
+from solver_service.numerics.snapshot import Maxima, Snapshot
+from solver_service.numerics.wet_block_kernels import BLOCK_STRIDE, classify_blocks, quantise_depth
+
+WALL_HEIGHT = 1000.0
+"""How far blocked cells stand above the highest bed [m]."""
+
+LOG = logging.getLogger(__name__)
+
+
+class ShallowWaterSolver:
+    """Computes the flood of a model.
+
+    One thread owns a solver. Rasters that come in or go out are host arrays [row, col], row 0 in the south.
+
+    Args:
+        model: what does not move.
+        params: scheme and tuning.
+        device: `cpu`, `cuda:N` or `auto`.
+
+    Raises:
+        DeviceError: when the device is not there.
+        ModelError: when a gauge is off the grid.
+    """
+
+    def __init__(self, model: FloodModel, params: SolverParams | None = None, device: str = "cpu") -> None:
+        self.model = model
+        self.params = params = params or SolverParams()
+        self.device = pick_device(device)
+        self._store = store = FieldStore(*model.shape, self.device)
+        self._edge_kinds = self._edge_codes()
+        self._z_b = model.z_b.copy()
+        store.write_padded("z", self._walled(self._z_b))
+        drag = float(GRAVITY) * np.broadcast_to(np.asarray(model.manning_n, np.float64), model.shape) ** 2
+        store.write_padded("drag", np.pad(drag.astype(np.float32), 2, mode="symmetric"))
+        self._forcing = Forcing(model, self.device)
+        self._gauges = GaugeRecorder(params, store)
+        self._tiles = ActiveTiles(store, params.depth_film, forced_cells(model, store))
+        self._engine = self._choose_engine()
+        self._initial_volume = 0.0
+        self._edits_volume = 0.0
+        self.set_water(np.zeros(model.shape, np.float32))
+
+    def _edge_codes(self) -> npt.NDArray[np.int32]:
+        kinds = np.full((4, max(self.model.shape)), WALL, np.int32)
+        for boundary in self.model.boundaries:
+            kinds[EDGES.index(boundary.edge), boundary.first : boundary.last] = (
+                OPEN if boundary.kind == "open" else WALL
+            )
+        return kinds
+
+    def _walled(self, z_b: FloatRaster) -> FloatRaster:
+        if self.model.blocked is not None:
+            z_b = np.where(self.model.blocked, z_b.max() + np.float32(WALL_HEIGHT), z_b)
+        return pad_bed(z_b, self._edge_kinds)
+
+    def _scheme(self) -> Scheme:
+        params, scheme = self.params, Scheme()
+        scheme.dx = self.model.dx
+        scheme.theta = params.limiter_theta if params.order == 2 else 0.0
+        scheme.hancock = 1.0 if params.order == 2 else 0.0
+        scheme.contact = 1.0 if params.riemann == "hllc" else 0.0
+        scheme.depth_dry = params.depth_dry
+        scheme.depth_film = params.depth_film
+        scheme.depth_arrival = params.depth_arrival
+        scheme.nrows, scheme.ncols = self.model.shape
+        return scheme
+
+    def _choose_engine(self) -> Engine:
+        params = self.params
+        courant = params.cfl * self.model.dx
+        parts = StepParts(
+            store=self._store,
+            scheme=self._scheme(),
+            tiles=self._tiles,
+            forcing=self._forcing,
+            gauges=self._gauges,
+            edge_kinds=self._edge_kinds,
+            courant=courant,
+            dt_max=min(params.dt_max, params.cfl * self._forcing.dt_max, self._gauges.dt_max),
+            dt_min=params.dt_min,
+        )
+        if self.device == "cpu" and params.engine != "kernels" and rows_compile():
+            return RowEngine(parts, thread_count(params.threads))
+        warm_kernels(self.device, with_oracle=True)
+        return KernelEngine(parts)
+
+    # --- water ---------------------------------------------------------------------------------
+
+    def set_water(
+        self, h: npt.ArrayLike, u: npt.ArrayLike | None = None, v: npt.ArrayLike | None = None
+    ) -> None:
+        """Begin at time zero with the given water; maxima, budget and gauges begin anew.
+
+        Args:
+            h: depth [m], [nrows, ncols], finite and not negative.
+            u: velocity to the east [m/s]; None is water at rest.
+            v: velocity to the north [m/s].
+
+        Raises:
+            ModelError: naming the cell that is not valid.
+        """
+        depth = self._checked("depth", h)
+        if self.model.blocked is not None:
+            depth = np.where(self.model.blocked, np.float32(0.0), depth)
+        negative = np.argwhere(depth < 0.0)
+        if negative.size:
+            row, col = negative[0]
+            raise ModelError(
+                f"The depth is {depth[row, col]} m in cell (row {row}, column {col}); >= 0 is allowed."
+            )
+        moving = depth > self.params.depth_dry
+        store, engine = self._store, self._engine
+        store.write("h", depth)
+        for name, values in (("u", u), ("v", v)):
+            velocity = np.zeros_like(depth) if values is None else self._checked(f"velocity {name}", values)
+            store.write(name, np.where(moving, velocity, np.float32(0.0)))
+        engine.time, engine.dt, engine.step_count = 0.0, 0.0, 0
+        self._reset_maxima(depth)
+        store.edge_flow.zero_()
+        self._forcing.released = np.zeros(self._forcing.series_count)
+        self._initial_volume = stored_volume(store, self.model.dx)
+        self._edits_volume = 0.0
+        self._gauges.begin()
+        self._water_changed()
+
+    def _checked(self, what: str, values: npt.ArrayLike) -> FloatRaster:
+        array = np.ascontiguousarray(values, np.float32)
+        if array.shape != self.model.shape:
+            raise ModelError(f"The {what} has the shape {array.shape}; the grid's is {self.model.shape}.")
+        bad = np.argwhere(~np.isfinite(array))
+        if bad.size:
+            row, col = bad[0]
+            raise ModelError(
+                f"The {what} is {array[row, col]} in cell (row {row}, column {col}); finite is allowed."
+            )
+        return array
+
+    def _reset_maxima(self, h: FloatRaster) -> None:
+        u, v = self._store.read("u"), self._store.read("v")
+        speed = np.where(h > 0.05, np.sqrt(u * u + v * v), np.float32(0.0))
+        arrived = h > self.params.depth_arrival
+        hazard = h * (speed + np.float32(0.5)) + np.where(h > 0.25, np.float32(1.0), np.float32(0.5))
+        self._store.write("h_max", h)
+        self._store.write("h_max_time", np.zeros_like(h))
+        self._store.write("speed_max", speed)
+        self._store.write("discharge_max", h * speed)
+        self._store.write("hazard_max", np.where(arrived, hazard, np.float32(0.0)))
+        self._store.write("arrival", np.where(arrived, np.float32(0.0), np.float32(NEVER)))
+
+    def _water_changed(self) -> None:
+        self._engine.wave_speed = float(self._wave_speeds().max())
+        self._engine.state_changed()
+
+    def _wave_speeds(self) -> FloatRaster:
+        h, u, v = (self._store.interior(name) for name in STATE_NAMES)
+        return np.maximum(np.abs(u), np.abs(v)) + np.sqrt(np.float32(GRAVITY) * h)
+
+    # --- time ------------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """Simulation time [s]."""
+        return self._engine.time
+
+    @property
+    def step_count(self) -> int:
+        """Steps since the start."""
+        return self._engine.step_count
+
+    @property
+    def dt(self) -> float:
+        """Time step that stability allows now [s]."""
+        wave = self._engine.wave_speed
+        dt_max = self._engine.parts.dt_max
+        return min(self._engine.parts.courant / wave, dt_max) if wave > 0.0 else dt_max
+
+    def advance_to(self, time: float, should_stop: StopQuestion | None = None) -> bool:
+        """Compute up to exactly `time` [s].
+
+        Args:
+            time: where to land [s]; not before the present time.
+            should_stop: asked between steps, now and then; True ends early with a valid state.
+
+        Returns:
+            True when the time is reached, False after an early end.
+
+        Raises:
+            ModelError: when the time lies in the past or is not finite.
+            SolverBlowUp: when a value is not finite or the time step collapsed.
+        """
+        if not (math.isfinite(time) and time >= self.time):
+            raise ModelError(
+                f"The time to compute to is {time} s; at least the present {self.time} s is allowed."
+            )
+        try:
+            return self._engine.advance(float(time), should_stop)
+        except StepCollapse:
+            raise self._blow_up() from None
+
+    def _blow_up(self) -> SolverBlowUp:
+        for name, unit in (("h", "m"), ("u", "m/s"), ("v", "m/s")):
+            values = self._store.interior(name)
+            bad = np.argwhere(~np.isfinite(values) | (values < 0.0 if name == "h" else False))
+            if bad.size:
+                row, col = (int(k) for k in bad[0])
+                cause = "likely a bed, roughness or inflow value far out of range near it"
+                return SolverBlowUp(self.time, row, col, f"{name} is {values[row, col]} {unit}", cause)
+        row, col = self.limiting_cell()
+        speed = float(self._wave_speeds()[row, col])
+        floor = self.params.dt_min
+        cause = "likely a bed step or an inflow that is too steep for the cell size"
+        return SolverBlowUp(
+            self.time, row, col, f"the wave speed {speed:g} m/s asks for dt < {floor:g} s", cause
+        )
+
+    def limiting_cell(self) -> tuple[int, int]:
+        """Row and column of the cell that decides the time step."""
+        row, col = divmod(int(np.argmax(self._wave_speeds())), self.model.shape[1])
+        return row, col
+
+    # --- what there is -----------------------------------------------------------------------------
+
+    @property
+    def bed(self) -> FloatRaster:
+        """Bed as edited [m], a copy."""
+        return self._z_b.copy()
+
+    def depth(self) -> FloatRaster:
+        """Depth [m], a host copy [nrows, ncols]."""
+        return self._store.read("h")
+
+    def velocity(self) -> tuple[FloatRaster, FloatRaster]:
+        """Velocities to the east and to the north [m/s], host copies."""
+        return self._store.read("u"), self._store.read("v")
+
+    @property
+    def wet_cells(self) -> int:
+        """Cells deeper than `depth_dry`."""
+        return int(np.count_nonzero(self._store.interior("h") > self.params.depth_dry))
+
+    @property
+    def active_cells(self) -> int:
+        """Cells of the tiles that the last step computed."""
+        return int(np.count_nonzero(self._tiles.mask())) * 32 * 32
+
+    def maxima(self) -> Maxima:
+        """Largest values since the start, host copies."""
+        read = self._store.read
+        h = read("h")
+        h_max, arrival, time = read("h_max"), read("arrival"), read("h_max_time")
+        grew = h > h_max  # rain and sources raise the water after the step
+        h_max = np.maximum(h_max, h)
+        time = np.where(grew, np.float32(self.time), time)
+        nan = np.float32(np.nan)
+        return Maxima(
+            h=h_max,
+            time_of_max=np.where(h_max > self.params.depth_dry, time, nan),
+            speed=read("speed_max"),
+            unit_discharge=read("discharge_max"),
+            hazard=read("hazard_max"),
+            arrival_time=np.where(arrival < NEVER, arrival, nan),
+        )
+
+    def budget(self) -> VolumeBudget:
+        """Where the water came from and went."""
+        inflow, rain = self._forcing.volumes()
+        return VolumeBudget(
+            initial=self._initial_volume,
+            stored=stored_volume(self._store, self.model.dx),
+            inflow=inflow,
+            outflow=edge_outflow(self._store, self.model.dx),
+            rain=rain,
+            edits=self._edits_volume,
+        )
+
+    def gauge_series(self) -> GaugeSeries:
+        """What the gauges of the parameters have recorded."""
+        return self._gauges.series()
+
+    def quantise(
+        self, scale: float, depth_wet: float
+    ) -> tuple[npt.NDArray[np.uint16], npt.NDArray[np.uint8]]:
+        """Fixed-point depth and block states, made on the device; see `wet_block_kernels`.
+
+        Args:
+            scale: depth of one unit [m].
+            depth_wet: depth below which a cell is dry [m].
+
+        Returns:
+            q [nrows, ncols] and states [block_rows, block_cols].
+        """
+        nrows, ncols = self.model.shape
+        blocks = tuple(max(1, -(-(n - 1) // BLOCK_STRIDE)) for n in (nrows, ncols))
+        q = wp.empty((nrows, ncols), dtype=wp.uint16, device=self.device)
+        states = wp.empty(blocks, dtype=wp.uint8, device=self.device)
+        wp.launch(
+            quantise_depth,
+            dim=(nrows, ncols),
+            inputs=[self._store.current("h"), scale, depth_wet],
+            outputs=[q],
+            device=self.device,
+        )
+        wp.launch(classify_blocks, dim=blocks, inputs=[q], outputs=[states], device=self.device)
+        return q.numpy().copy(), states.numpy().copy()
+
+    # --- change and keep ---------------------------------------------------------------------------
+
+    def replace_bed(self, z_b: npt.ArrayLike) -> BedChange:
+        """Set the bed [m], effective at once; see `bed_change` for the water on it.
+
+        Raises:
+            ModelError: when shape or values are not valid.
+        """
+        bed = check_bed(z_b, self.model.shape)
+        change = change_water(self._store, self._z_b, bed, self.params.depth_dry, self.model.dx)
+        self._edits_volume += change.volume_cut
+        self._z_b = bed.copy()
+        self._store.write_padded("z", self._walled(bed))
+        self._water_changed()
+        return change
+
+    def snapshot(self) -> Snapshot:
+        """The exact state; see `Snapshot`."""
+        store, engine = self._store, self._engine
+        arrays: dict[str, npt.NDArray] = {name: store.read(name) for name in (*STATE_NAMES, *MAXIMA_NAMES)}
+        arrays["z_b"] = self._z_b.copy()
+        arrays["edge_flow"] = store.edge_flow.numpy().copy()
+        arrays["released"] = self._forcing.released
+        arrays["gauge_records"] = self._gauges.records().copy()
+        scalars = {
+            "time": engine.time,
+            "step_count": engine.step_count,
+            "dt": engine.dt,
+            "wave_speed": engine.wave_speed,
+            "initial_volume": self._initial_volume,
+            "edits_volume": self._edits_volume,
+        }
+        return Snapshot(arrays, scalars)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a state of this model; what follows is bit for bit what followed then.
+
+        Raises:
+            ModelError: when the snapshot is of another grid, another set of sources or gauges, or lacks a part.
+        """
+        store, engine = self._store, self._engine
+        try:
+            arrays = {name: np.asarray(values) for name, values in snapshot.arrays.items()}
+            rasters = {name: arrays[name] for name in (*STATE_NAMES, *MAXIMA_NAMES, "z_b")}
+            shapes = {name: values.shape for name, values in rasters.items()}
+            scalars = dict(snapshot.scalars)
+            time, step_count, dt = float(scalars["time"]), int(scalars["step_count"]), float(scalars["dt"])
+            wave_speed = float(scalars["wave_speed"])
+            volumes = float(scalars["initial_volume"]), float(scalars["edits_volume"])
+            released, edge_flow, records = arrays["released"], arrays["edge_flow"], arrays["gauge_records"]
+        except KeyError as error:
+            raise ModelError(f"The snapshot lacks {error.args[0]!r}.") from None
+        for name, shape in shapes.items():
+            if shape != self.model.shape:
+                raise ModelError(
+                    f"The snapshot's {name} has the shape {shape}; the grid's is {self.model.shape}."
+                )
+        if released.shape != (self._forcing.series_count,) or records.shape[1:] != (self._gauges.count, 4):
+            raise ModelError("The snapshot belongs to a model with other sources, rain or gauges.")
+        self._z_b = np.array(rasters["z_b"], np.float32)
+        store.write_padded("z", self._walled(self._z_b))
+        for name in (*STATE_NAMES, *MAXIMA_NAMES):
+            store.write(name, rasters[name])
+        store.edge_flow.assign(edge_flow)
+        self._forcing.released = released
+        self._gauges.restore(records)
+        self._initial_volume, self._edits_volume = volumes
+        engine.time, engine.step_count, engine.dt, engine.wave_speed = time, step_count, dt, wave_speed
+        engine.state_changed()

@@ -1,0 +1,23 @@
+"""The Warp modules that the kernels live in, and their options.
+
+Few modules mean a short cold start, since each costs one compiler run. `step` holds the fused step of the scalar
+and CUDA engines, `rows` the SIMD step of CPUs (its native code must never reach NVRTC), `support` everything else.
+
+`fuse_fp` is off: without contraction a face that two cells compute apart gives both the same float, so that mass
+is conserved, and every engine gives the same bits.
+"""
+
+import warp as wp
+
+wp.config.log_level = max(wp.config.log_level, 30)
+
+
+def _module(name: str) -> wp.Module:
+    module = wp.get_module(name)
+    module.options.update({"enable_backward": False, "fuse_fp": False, "fast_math": False})
+    return module
+
+
+STEP_MODULE = _module("solver_service.numerics.warp_step")
+ROWS_MODULE = _module("solver_service.numerics.warp_rows")
+SUPPORT_MODULE = _module("solver_service.numerics.warp_support")
