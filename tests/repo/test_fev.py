@@ -1,8 +1,6 @@
 """./fev: what it finds missing, when it installs, what it refuses, and that an old Python is told so."""
 
 import ast
-import importlib.machinery
-import importlib.util
 import os
 import subprocess
 import sys
@@ -16,17 +14,9 @@ SCRIPT = REPOSITORY / "fev"
 
 
 @pytest.fixture
-def fev(tmp_path: Path) -> ModuleType:
+def fev(fev_script: ModuleType, tmp_path: Path) -> ModuleType:
     """The script as a module whose repository is an empty folder."""
-    loader = importlib.machinery.SourceFileLoader("fev_script", str(SCRIPT))
-    specification = importlib.util.spec_from_loader("fev_script", loader)
-    assert specification is not None
-    module = importlib.util.module_from_spec(specification)
-    sys.dont_write_bytecode, before = True, sys.dont_write_bytecode
-    try:
-        loader.exec_module(module)
-    finally:
-        sys.dont_write_bytecode = before
+    module = fev_script
     module.ROOT = tmp_path
     module.VENV = tmp_path / ".venv"
     module.STAMP = module.VENV / "fev-stamp"
