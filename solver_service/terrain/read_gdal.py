@@ -1,0 +1,101 @@
+"""GeoTIFF, ESRI ASCII grid, USGS DEM and ERDAS Imagine rasters, read through GDAL.
+
+GDAL opens nearly anything, a text file that makes it read other files included. So each format has one
+driver, fixed by the first bytes of the file, and GDAL neither lists folders nor reads side-car files.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from solver_service.errors import TerrainError
+from solver_service.terrain.raster import Raster, check_size, one_mask
+
+TIFF_MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+METRES = ("", "m", "metre", "metres", "meter", "meters")
+
+
+def read_geotiff(path: Path) -> Raster:
+    """Read a GeoTIFF (cloud-optimised or not).
+
+    Raises:
+        TerrainError: not a GeoTIFF of one band of elevations on an upright grid.
+    """
+    if not _head(path).startswith(TIFF_MAGIC):
+        raise TerrainError(f"File '{path.name}' does not begin like a TIFF; a GeoTIFF is allowed there.")
+    return _read(path, "GTiff")
+
+
+def read_ascii_grid(path: Path) -> Raster:
+    """Read an ESRI ASCII grid; its coordinate system stands in a .prj file beside it, if anywhere.
+
+    Raises:
+        TerrainError: not an ESRI ASCII grid.
+    """
+    if b"ncols" not in _head(path).lower():
+        raise TerrainError(
+            f"File '{path.name}' does not begin with 'ncols'; an ESRI ASCII grid is allowed there."
+        )
+    raster = _read(path, "AAIGrid")
+    beside = path.with_suffix(".prj")
+    if raster.crs is None and beside.is_file() and not beside.is_symlink():
+        text = beside.read_text(encoding="utf-8", errors="replace")[:65536]
+        return Raster(raster.values, raster.x0, raster.y0, raster.dx, raster.dy, text.strip() or None)
+    return raster
+
+
+def read_usgs_dem(path: Path) -> Raster:
+    """Read a USGS DEM in its ASCII form.
+
+    Raises:
+        TerrainError: not a USGS DEM.
+    """
+    return _read(path, "USGSDEM")
+
+
+def read_erdas(path: Path) -> Raster:
+    """Read an ERDAS Imagine raster.
+
+    Raises:
+        TerrainError: not an ERDAS Imagine raster.
+    """
+    if not _head(path).startswith(b"EHFA_HEADER_TAG"):
+        raise TerrainError(f"File '{path.name}' does not begin like an ERDAS Imagine raster.")
+    return _read(path, "HFA")
+
+
+def _head(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            return file.read(256)
+    except OSError as error:
+        raise TerrainError(f"File '{path.name}' cannot be read: {error.strerror}.") from error
+
+
+def _read(path: Path, driver: str) -> Raster:
+    import rasterio
+    from rasterio.errors import RasterioError
+
+    quiet = {"GDAL_DISABLE_READDIR_ON_OPEN": "EMPTY_DIR", "GDAL_PAM_ENABLED": "NO"}
+    try:
+        with rasterio.Env(**quiet), rasterio.open(path.resolve(), driver=driver) as source:
+            check_size(path, source.height, source.width)
+            if source.count != 1:
+                raise TerrainError(f"Raster '{path.name}' has {source.count} bands; one band is allowed.")
+            turn = source.transform
+            if turn.b or turn.d or turn.a <= 0.0 or turn.e >= 0.0:
+                raise TerrainError(
+                    f"Raster '{path.name}' is turned or has no geographic position (transform"
+                    f" {tuple(turn)[:6]}); rows that run from north to south are allowed."
+                )
+            unit = (source.units[0] or "").strip().lower()
+            if unit not in METRES:
+                raise TerrainError(f"Raster '{path.name}' has values in '{unit}'; metres are allowed.")
+            if source.dtypes[0].startswith("complex"):
+                raise TerrainError(f"Raster '{path.name}' has complex values; real numbers are allowed.")
+            values = one_mask(source.read(1), source.nodata)[::-1]
+            bottom = turn.f + source.height * turn.e
+            crs = source.crs.to_wkt() if source.crs else None
+            return Raster(values, turn.c, bottom, turn.a, -turn.e, crs)
+    except (RasterioError, OSError) as error:
+        raise TerrainError(f"File '{path.name}' cannot be read as {driver}: {error}.") from error
