@@ -43,6 +43,7 @@ class ServerSession:
 
     Args:
         max_pending: most commands that may be unanswered.
+        part_bytes: size above which a frame is cut in parts.
 
     Attributes:
         state: where the connection stands.
@@ -52,13 +53,14 @@ class ServerSession:
         credit: frames that may still be sent.
     """
 
-    def __init__(self, max_pending: int = MAX_PENDING_COMMANDS) -> None:
+    def __init__(self, max_pending: int = MAX_PENDING_COMMANDS, part_bytes: int = PART_BYTES) -> None:
         self.state = SessionState.CONNECTING
         self.hello: Hello | None = None
         self.version: str | None = None
         self.subscription: Subscribe | None = None
         self.credit = 0
         self._max_pending = max_pending
+        self._part_bytes = part_bytes
         self._pending: dict[int, Command | None] = {}
         self._last_id = 0
         self._keys_sent: list[tuple[str, int]] = []
@@ -165,21 +167,12 @@ class ServerSession:
                 f"Frame {frame.index} needs the key frame {frame.key_index} to be sent first."
             )
         self.credit -= 1
-        if len(data) <= PART_BYTES:
+        if len(data) <= self._part_bytes:
             return [data]
-        parts = -(-len(data) // PART_BYTES)
-        view = memoryview(data)
+        pieces = [data[at : at + self._part_bytes] for at in range(0, len(data), self._part_bytes)]
         return [
-            pack(
-                FramePart(
-                    run=frame.run,
-                    index=frame.index,
-                    part=part,
-                    parts=parts,
-                    data=bytes(view[part * PART_BYTES : (part + 1) * PART_BYTES]),
-                )
-            )
-            for part in range(parts)
+            pack(FramePart(run=frame.run, index=frame.index, part=part, parts=len(pieces), data=piece))
+            for part, piece in enumerate(pieces)
         ]
 
     def move_to(self, run: str, index: int) -> None:

@@ -6,9 +6,9 @@ A megabyte of empty maps would unpack to sixty times its size; here it costs one
 from __future__ import annotations
 
 from protocol.errors import MalformedMessage, TooLarge
-from protocol.limits import MAX_ARRAY_LENGTH, MAX_DEPTH, MAX_MAP_LENGTH
+from protocol.limits import MAX_ARRAY_LENGTH, MAX_DEPTH, MAX_MAP_LENGTH, MAX_STRING_BYTES
 
-_SCALAR, _SIZED, _ARRAY, _MAP, _REFUSED = range(5)
+_SCALAR, _TEXT, _ARRAY, _MAP, _REFUSED = range(5)
 
 
 def _kind_of(lead: int) -> tuple[int, int, int]:
@@ -20,16 +20,24 @@ def _kind_of(lead: int) -> tuple[int, int, int]:
     if lead <= 0x9F:
         return (_ARRAY, 0, lead & 0x0F)
     if lead <= 0xBF:
-        return (_SCALAR, 0, lead & 0x1F)
-    sized = {0xC4: 1, 0xC5: 2, 0xC6: 4, 0xD9: 1, 0xDA: 2, 0xDB: 4}
+        return (_TEXT, 0, lead & 0x1F)
+    sized = {
+        0xC4: (_SCALAR, 1),
+        0xC5: (_SCALAR, 2),
+        0xC6: (_SCALAR, 4),
+        0xD9: (_TEXT, 1),
+        0xDA: (_TEXT, 2),
+        0xDB: (_TEXT, 4),
+        0xDC: (_ARRAY, 2),
+        0xDD: (_ARRAY, 4),
+        0xDE: (_MAP, 2),
+        0xDF: (_MAP, 4),
+    }
     fixed = {0xCA: 4, 0xCB: 8, 0xCC: 1, 0xCD: 2, 0xCE: 4, 0xCF: 8, 0xD0: 1, 0xD1: 2, 0xD2: 4, 0xD3: 8}
-    containers = {0xDC: (_ARRAY, 2), 0xDD: (_ARRAY, 4), 0xDE: (_MAP, 2), 0xDF: (_MAP, 4)}
     if lead in sized:
-        return (_SIZED, sized[lead], 0)
+        return (*sized[lead], 0)
     if lead in fixed:
         return (_SCALAR, 0, fixed[lead])
-    if lead in containers:
-        return (*containers[lead], 0)
     return (_REFUSED, 0, 0)
 
 
@@ -45,7 +53,7 @@ def check_structure(data: bytes, max_items: int) -> None:
 
     Raises:
         MalformedMessage: when the value is cut short, is followed by more, or holds an extension type.
-        TooLarge: when it has more items than allowed, an array or map that is too long, or nests too deep.
+        TooLarge: when it has too many items, an array, map or text that is too long, or nests too deep.
     """
     size = len(data)
     position = 0
@@ -67,7 +75,11 @@ def check_structure(data: bytes, max_items: int) -> None:
         if length_bytes:
             count = int.from_bytes(data[position : position + length_bytes], "big")
             position += length_bytes
-        if kind <= _SIZED:
+        if kind <= _TEXT:
+            if kind == _TEXT and count > MAX_STRING_BYTES:
+                raise TooLarge(
+                    f"A message has a text of {count} bytes; up to {MAX_STRING_BYTES} are allowed."
+                )
             position += count
             continue
         if kind == _REFUSED:

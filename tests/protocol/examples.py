@@ -1,0 +1,138 @@
+"""One or two examples of every message; the golden bytes are theirs."""
+
+from typing import get_args
+
+import protocol as p
+from protocol import Message
+
+LINE = p.EditLine(
+    id="levee-1",
+    vertices=((100.0, 250.5), (180.0, 260.0), (240.25, 300.0)),
+    width=12.5,
+    operation=p.Operation.raise_,
+    type=p.EditType.replace,
+    magnitude=3.0,
+    reference_z=(4.5, 5.0, 5.25),
+)
+AREA = p.EditArea(
+    id="pit",
+    vertices=((10.0, 10.0), (40.0, 12.0), (30.0, 44.0)),
+    operation=p.Operation.lower,
+    type=p.EditType.modulate,
+    magnitude=1.5,
+    level=None,
+)
+GRID = p.GridInfo(
+    nrows=120,
+    ncols=200,
+    dx=30.0,
+    x0=-500.0,
+    y0=1000.0,
+    crs="EPSG:32616",
+    vertical_datum="NGVD29",
+    datum_offset=300.0,
+)
+RUN = p.RunInfo(
+    run="r-1",
+    case="jacksboro",
+    title="A dam breaks above Jacksboro",
+    status="running",
+    grid=GRID,
+    duration=3600.0,
+    output_interval=10.0,
+    frame_count=12,
+    device="cpu",
+    hypothetical=True,
+    depth_wet=0.001,
+    lineage=(p.LineageEntry("r-1", 0),),
+    source="USGS",
+    licence="public domain",
+)
+CHILD = p.RunInfo(
+    run="r-2",
+    case="jacksboro",
+    title="A dam breaks above Jacksboro",
+    status="failed",
+    grid=GRID,
+    duration=3600.0,
+    output_interval=10.0,
+    frame_count=8,
+    device="cuda:0",
+    hypothetical=True,
+    depth_wet=0.001,
+    parent="r-1",
+    branch_index=7,
+    revision=1,
+    lineage=(p.LineageEntry("r-1", 0), p.LineageEntry("r-2", 7)),
+    start_time="1959-12-02T21:14:00+01:00",
+    message="The water blew up.",
+)
+CASE = p.CaseSummary(
+    name="jacksboro",
+    title="A dam breaks above Jacksboro",
+    hypothetical=True,
+    nrows=120,
+    ncols=200,
+    dx=30.0,
+    duration=3600.0,
+    output_interval=10.0,
+    source="USGS",
+    licence="public domain",
+)
+
+CLIENT_EXAMPLES: dict[str, Message] = {
+    "hello": p.Hello(client="test 1.0", versions=("fev.v1",), capabilities=("depth", "edits")),
+    "hello-resume": p.Hello(
+        client="test 1.0",
+        token="s3cret",
+        resume=p.ResumePoint(run="r-1", last_index=11, revision=2),
+        capabilities=(),
+    ),
+    "list_cases": p.ListCases(1),
+    "list_runs": p.ListRuns(2),
+    "start_run": p.StartRun(3, "jacksboro"),
+    "start_run-full": p.StartRun(3, "malpasset", 4000.0, 20.0, "cuda:1", True),
+    "pause_run": p.PauseRun(4, "r-1"),
+    "resume_run": p.ResumeRun(5, "r-1"),
+    "stop_run": p.StopRun(6, "r-1"),
+    "get_terrain": p.GetTerrain(7, "r-1"),
+    "subscribe": p.Subscribe(8, "r-1", 0, "live", 2),
+    "unsubscribe": p.Unsubscribe(9),
+    "seek": p.Seek(10, "r-1", 5),
+    "credit": p.Credit(1),
+    "append_edit": p.AppendEdit(11, "r-1", LINE),
+    "append_edit-area": p.AppendEdit(12, "r-1", AREA),
+    "undo_edit": p.UndoEdit(13, "r-1"),
+    "redo_edit": p.RedoEdit(14, "r-1"),
+    "recalculate": p.Recalculate(15, "r-1", 7, 1),
+}
+
+SERVER_EXAMPLES: dict[str, Message] = {
+    "welcome": p.Welcome(
+        protocol="fev.v1",
+        server="fev-solver",
+        version="0.1.0",
+        session="c0ffee",
+        capabilities=("depth", "edits"),
+        devices=("cpu", "cuda:0"),
+    ),
+    "ack": p.Ack(3, {"run": "r-1"}),
+    "ack-empty": p.Ack(4),
+    "error": p.Error(15, "not_computed", "Frame 9 of run 'r-1' is not computed yet."),
+    "error-closing": p.Error(None, "malformed", "A message is cut short."),
+    "case_list": p.CaseList(1, (CASE,)),
+    "run_list": p.RunList(2, (RUN, CHILD)),
+    "run_changed": p.RunChanged(RUN),
+    "run_branched": p.RunBranched("r-1", CHILD),
+    "terrain": p.Terrain(7, "r-1", 0, 2, (120, 200), "zstd-f32", bytes(range(16))),
+    "edits_changed": p.EditsChanged("r-1", 2, (LINE, AREA), True, False),
+    "frame": p.Frame("r-1", 33, 330.0, 1, 32, 0.001, b"\x1b\x02", 6, 0xDEADBEEF, bytes(range(12))),
+    "frame_part": p.FramePart("r-1", 33, 1, 2, bytes(range(8))),
+    "progress": p.Progress("r-1", 331.5, 1200, 0.25, 40.0, 8.3, 3.5e6, -1e-9, 4021, (60, 100)),
+    "notice": p.Notice("warning", "The disk is nearly full.", "r-1"),
+}
+
+EXAMPLES = CLIENT_EXAMPLES | SERVER_EXAMPLES
+
+CLIENT_KINDS: tuple[type[Message], ...] = get_args(p.ClientMessage)
+SERVER_KINDS: tuple[type[Message], ...] = get_args(p.ServerMessage)
