@@ -1,0 +1,155 @@
+"""The data folder of a service: its layout, its lock, and the file operations that survive a power cut.
+
+<data-dir>/service.lock     held for the life of the service; a second service is refused
+<data-dir>/runs.sqlite      runs, edits, events, commit rows
+<data-dir>/frames/<run>/    segment files with packed frames, append-only
+<data-dir>/checkpoints/<run>/  one Zarr group per full-precision state
+<data-dir>/terrain/         base beds, named by their fingerprint
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from pathlib import Path
+from types import TracebackType
+
+import platformdirs
+
+from solver_service.errors import StoreError
+
+_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}\Z")
+
+
+def default_data_dir() -> Path:
+    """The folder for user data of this platform."""
+    return Path(platformdirs.user_data_dir("flood-emergency-visualizer", appauthor=False))
+
+
+def fsync_file(path: Path) -> None:
+    """Force one file to the disk."""
+    descriptor = os.open(path, os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def fsync_folder(path: Path) -> None:
+    """Force the entries of a folder to the disk (a no-op where folders cannot be opened, as on Windows)."""
+    if os.name == "nt":
+        return
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+class DataFolder:
+    """Paths below one data folder. Ids are checked here, so that no path ever comes from a message."""
+
+    def __init__(self, root: Path) -> None:
+        """Make the folder where it does not exist.
+
+        Raises:
+            StoreError: the folder cannot be made or written.
+        """
+        self.root = root
+        try:
+            for folder in (root, root / "frames", root / "checkpoints", root / "terrain"):
+                folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise StoreError(f"data folder {root} cannot be used: {error.strerror or error}") from error
+        self._lock: _FileLock | None = None
+
+    @property
+    def database(self) -> Path:
+        """The SQLite file."""
+        return self.root / "runs.sqlite"
+
+    def frames(self, run: str) -> Path:
+        """Folder of the segment files of a run."""
+        return self.root / "frames" / _checked(run)
+
+    def checkpoints(self, run: str) -> Path:
+        """Folder of the checkpoints of a run."""
+        return self.root / "checkpoints" / _checked(run)
+
+    def terrain(self, fingerprint: str) -> Path:
+        """File of a base bed."""
+        return self.root / "terrain" / f"{_checked(fingerprint)}.zst"
+
+    def lock(self) -> None:
+        """Take the folder for this process until `unlock` or the end of the process.
+
+        Raises:
+            StoreError: another service holds it.
+        """
+        self._lock = _FileLock(self.root / "service.lock")
+
+    def unlock(self) -> None:
+        """Give the folder back."""
+        if self._lock is not None:
+            self._lock.release()
+            self._lock = None
+
+    def remove_unfinished(self) -> None:
+        """Delete what a crash left half-written: temporary folders and files, never anything with a row."""
+        for folder in (self.root / "checkpoints").glob("*/*.writing"):
+            shutil.rmtree(folder)
+        for file in (self.root / "terrain").glob("*.writing"):
+            file.unlink()
+
+    def __enter__(self) -> DataFolder:
+        """Lock on entry."""
+        self.lock()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Unlock on exit."""
+        self.unlock()
+
+
+def _checked(name: str) -> str:
+    if not _NAME.match(name):
+        raise StoreError(f"id {name!r} is not 1 to 64 letters, digits, '_' or '-'")
+    return name
+
+
+class _FileLock:
+    """An advisory lock that the operating system releases when the process ends, however it ends."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("a+")
+        try:
+            self._acquire()
+        except OSError as error:
+            self._file.seek(0)
+            holder = self._file.read().strip() or "unknown"
+            self._file.close()
+            raise StoreError(
+                f"data folder {path.parent} is in use by another service (process {holder}); "
+                "stop it or choose another folder with --data-dir"
+            ) from error
+        self._file.seek(0)
+        self._file.truncate()
+        self._file.write(str(os.getpid()))
+        self._file.flush()
+
+    def _acquire(self) -> None:
+        if os.name == "nt":
+            import msvcrt
+
+            self._file.seek(1 << 30)
+            msvcrt.locking(self._file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
+        else:
+            import fcntl
+
+            fcntl.flock(self._file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+    def release(self) -> None:
+        self._file.close()

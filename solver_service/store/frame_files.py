@@ -1,0 +1,161 @@
+"""Frame bytes in append-only segment files: write, fsync, then the row.
+
+A frame is the packed `frame` message: encoded once, stored, streamed live and replayed as the same bytes.
+Each writer begins a segment of its own (never one that another process may still hold), so a torn tail can
+only be the end of a segment whose writer is gone; it is cut off by `recover_segments`, which trusts the rows
+alone.
+"""
+
+from __future__ import annotations
+
+import os
+import zlib
+from pathlib import Path
+
+from solver_service.errors import StoreError
+from solver_service.store.data_folder import DataFolder, fsync_folder
+from solver_service.store.records import FrameRecord
+from solver_service.store.run_database import RunDatabase
+
+SEGMENT_BYTES = 256 * 1024 * 1024
+
+
+class FrameWriter:
+    """Appends the frames of one run; used by one thread."""
+
+    def __init__(
+        self, folder: DataFolder, database: RunDatabase, run: str, segment_bytes: int = SEGMENT_BYTES
+    ) -> None:
+        """A writer that has not touched the disk yet.
+
+        Args:
+            folder: the data folder.
+            database: where the rows go; the connection of the calling thread.
+            run: the run.
+            segment_bytes: a segment that has reached this size is followed by a new one [bytes].
+        """
+        self._folder = folder
+        self._database = database
+        self._run = run
+        self._segment_bytes = segment_bytes
+        self._descriptor: int | None = None
+        self._segment = ""
+        self._end = 0
+
+    def append(self, *, index: int, time: float, revision: int, key_index: int, frame: bytes) -> FrameRecord:
+        """Store one frame; when this returns it survives a power cut.
+
+        Raises:
+            StoreError: the disk is full or broken; nothing of the frame is visible and the call may be
+                repeated.
+        """
+        try:
+            descriptor = self._open_segment()
+            _write_all(descriptor, frame, self._end)
+            os.fsync(descriptor)
+            record = FrameRecord(
+                run=self._run,
+                index=index,
+                time=time,
+                revision=revision,
+                key_index=key_index,
+                segment=self._segment,
+                offset=self._end,
+                size=len(frame),
+                crc32=zlib.crc32(frame),
+            )
+            self._database.insert_frame(record)
+        except OSError as error:
+            self._cut()
+            raise StoreError(
+                f"frame {index} of run {self._run} cannot be stored in {self._folder.root}: "
+                f"{error.strerror or error}"
+            ) from error
+        except StoreError:
+            self._cut()
+            raise
+        self._end += len(frame)
+        return record
+
+    def close(self) -> None:
+        """Close the segment."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
+
+    def _open_segment(self) -> int:
+        if self._descriptor is not None and self._end >= self._segment_bytes:
+            self.close()
+        if self._descriptor is None:
+            path = self._folder.frames(self._run)
+            path.mkdir(parents=True, exist_ok=True)
+            number = 1 + max((int(file.stem) for file in path.glob("*.segment")), default=0)
+            self._segment = f"{number:06d}.segment"
+            flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+            self._descriptor = os.open(path / self._segment, flags, 0o644)
+            self._end = 0
+            fsync_folder(path)
+        return self._descriptor
+
+    def _cut(self) -> None:
+        """Take back the bytes that have no row."""
+        if self._descriptor is not None:
+            os.ftruncate(self._descriptor, self._end)
+
+
+class FrameReader:
+    """Reads frames by their rows; safe from any thread."""
+
+    def __init__(self, folder: DataFolder) -> None:
+        """A reader below a data folder."""
+        self._folder = folder
+
+    def read(self, record: FrameRecord) -> bytes:
+        """The packed frame.
+
+        Raises:
+            StoreError: the bytes are missing or not those that were committed.
+        """
+        path = self._folder.frames(record.run) / record.segment
+        try:
+            with path.open("rb", buffering=0) as file:
+                file.seek(record.offset)
+                frame = file.read(record.size)
+        except OSError as error:
+            raise StoreError(
+                f"frame {record.index} of run {record.run} cannot be read from {path}: {error.strerror or error}"
+            ) from error
+        if len(frame) != record.size or zlib.crc32(frame) != record.crc32:
+            raise StoreError(f"frame {record.index} of run {record.run} is damaged in {path}")
+        return frame
+
+
+def recover_segments(folder: DataFolder, database: RunDatabase, run: str) -> int:
+    """Cut torn tails after a crash, so that the files hold what the rows say and nothing more.
+
+    Returns:
+        The number of bytes that were cut off.
+    """
+    ends = database.segment_ends(run)
+    cut = 0
+    for path in sorted(folder.frames(run).glob("*.segment")):
+        end = ends.get(path.name, 0)
+        size = path.stat().st_size
+        if end == 0:
+            path.unlink()
+        elif size > end:
+            os.truncate(path, end)
+        cut += max(size - end, 0)
+    return cut
+
+
+def _write_all(descriptor: int, content: bytes, offset: int) -> None:
+    os.lseek(descriptor, offset, os.SEEK_SET)
+    view = memoryview(content)
+    while view:
+        view = view[os.write(descriptor, view) :]
+
+
+def segment_files(folder: DataFolder, run: str) -> list[Path]:
+    """The segment files of a run in the order in which they were begun."""
+    return sorted(folder.frames(run).glob("*.segment"))

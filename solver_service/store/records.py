@@ -1,0 +1,124 @@
+"""The rows of the store as values: what is known of a run, a frame, a checkpoint, an edit event."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+@dataclass(frozen=True)
+class RunRecord:
+    """One run of the tree.
+
+    Attributes:
+        run: id, unique for ever.
+        case: the name under which the case is offered.
+        case_fingerprint: hash of the base bed and forcing; a run is only resumed on the case it began with.
+        title: what a person reads.
+        parent: the run it branched from, None for a root.
+        branch_index: first frame of its own; 0 for a root.
+        status: a value of `RunStatus`.
+        status_reason: a sentence for failed and paused runs, else empty.
+        duration: simulated time at which the run is finished [s].
+        output_interval: time between frames [s].
+        device: device name as asked for ("auto", "cpu", "cuda:0").
+        bed_revision: revision of the edit list that made the bed of this run.
+        bed_edits: the packed edit list that made the bed (opaque bytes).
+        facts: what the tree keeps of the case: grid, source, licence (opaque bytes).
+    """
+
+    run: str
+    case: str
+    case_fingerprint: str
+    title: str
+    parent: str | None
+    branch_index: int
+    status: str
+    status_reason: str
+    duration: float
+    output_interval: float
+    device: str
+    bed_revision: int
+    bed_edits: bytes
+    facts: bytes
+
+
+@dataclass(frozen=True)
+class FrameRecord:
+    """The commit row of one frame: where its bytes are and how to know that they are whole.
+
+    Attributes:
+        run: the run that computed it.
+        index: frame number, time = index x output_interval.
+        time: simulated time [s].
+        revision: edit revision of the bed it was computed on.
+        key_index: frame to which it is a delta; equal to index for a key frame.
+        segment: name of the segment file in the folder of the run.
+        offset: first byte in the segment.
+        size: number of bytes.
+        crc32: checksum of these bytes.
+    """
+
+    run: str
+    index: int
+    time: float
+    revision: int
+    key_index: int
+    segment: str
+    offset: int
+    size: int
+    crc32: int
+
+    @property
+    def is_key(self) -> bool:
+        """Whether the frame can be decoded alone."""
+        return self.key_index == self.index
+
+
+@dataclass(frozen=True)
+class CheckpointRecord:
+    """The commit row of one full-precision state.
+
+    Attributes:
+        run: the run whose state it is.
+        time: simulated time [s].
+        step_count: solver steps done.
+        name: folder name below the checkpoints of the run.
+        crc32: checksum over all arrays and scalars in a fixed order.
+        size: bytes on disk.
+    """
+
+    run: str
+    time: float
+    step_count: int
+    name: str
+    crc32: int
+    size: int
+
+
+class EditEventKind(StrEnum):
+    """What happened to the working list of edits."""
+
+    APPEND = "append"
+    UNDO = "undo"
+    REDO = "redo"
+
+
+@dataclass(frozen=True)
+class EditEvent:
+    """One change of the working list of a run, in the order in which it was acknowledged."""
+
+    run: str
+    sequence: int
+    kind: EditEventKind
+    edit: bytes
+
+
+@dataclass(frozen=True)
+class RunEvent:
+    """One line of the log of a run: status moves, branches, losses."""
+
+    run: str
+    wall_time: float
+    kind: str
+    detail: str

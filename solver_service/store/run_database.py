@@ -1,0 +1,257 @@
+"""The SQLite side of the store: WAL, synchronous FULL, every change one transaction.
+
+One object belongs to one thread; each process and thread opens its own. Writers of a service that was
+declared dead are fenced off: a service takes a new epoch when it opens the store, and a commit with an older
+epoch is refused, so that a worker which outlived its service cannot change the past of the next one.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import astuple, fields, replace
+from pathlib import Path
+
+from solver_service.errors import StoreError
+from solver_service.store.records import (
+    CheckpointRecord,
+    EditEvent,
+    EditEventKind,
+    FrameRecord,
+    RunEvent,
+    RunRecord,
+)
+
+SCHEMA_VERSION = 1
+BUSY_TIMEOUT_S = 10.0
+
+_SCHEMA = """
+CREATE TABLE service (key TEXT PRIMARY KEY, value INTEGER NOT NULL) WITHOUT ROWID;
+CREATE TABLE runs (
+    run TEXT PRIMARY KEY, "case" TEXT NOT NULL, case_fingerprint TEXT NOT NULL, title TEXT NOT NULL,
+    parent TEXT REFERENCES runs(run), branch_index INTEGER NOT NULL, status TEXT NOT NULL,
+    status_reason TEXT NOT NULL, duration REAL NOT NULL, output_interval REAL NOT NULL, device TEXT NOT NULL,
+    bed_revision INTEGER NOT NULL, bed_edits BLOB NOT NULL, facts BLOB NOT NULL);
+CREATE TABLE edit_events (
+    run TEXT NOT NULL REFERENCES runs(run), sequence INTEGER NOT NULL, kind TEXT NOT NULL, edit BLOB NOT NULL,
+    PRIMARY KEY (run, sequence)) WITHOUT ROWID;
+CREATE TABLE frames (
+    run TEXT NOT NULL REFERENCES runs(run), "index" INTEGER NOT NULL, time REAL NOT NULL, revision INTEGER NOT
+    NULL, key_index INTEGER NOT NULL, segment TEXT NOT NULL, "offset" INTEGER NOT NULL, size INTEGER NOT NULL,
+    crc32 INTEGER NOT NULL, PRIMARY KEY (run, "index")) WITHOUT ROWID;
+CREATE TABLE checkpoints (
+    run TEXT NOT NULL REFERENCES runs(run), time REAL NOT NULL, step_count INTEGER NOT NULL, name TEXT NOT
+    NULL, crc32 INTEGER NOT NULL, size INTEGER NOT NULL, PRIMARY KEY (run, name));
+CREATE TABLE run_events (run TEXT NOT NULL, wall_time REAL NOT NULL, kind TEXT NOT NULL, detail TEXT NOT
+NULL); INSERT INTO service VALUES ('epoch', 0);
+"""
+
+
+def _columns(record: type) -> str:
+    return ", ".join(f'"{field.name}"' for field in fields(record))
+
+
+def _marks(record: type) -> str:
+    return ", ".join("?" for _ in fields(record))
+
+
+_RUN = _columns(RunRecord)
+_FRAME = _columns(FrameRecord)
+_CHECKPOINT = _columns(CheckpointRecord)
+
+
+class RunDatabase:
+    """Runs, edit events, events and commit rows."""
+
+    def __init__(self, path: Path, epoch: int | None = None) -> None:
+        """Open, or make, the database.
+
+        Args:
+            path: the SQLite file.
+            epoch: the epoch of the service for which this object writes; None for the service itself, which
+                then
+                calls `begin_epoch`, and for readers.
+
+        Raises:
+            StoreError: not a store of this schema, or not readable.
+        """
+        self._path = path
+        self.epoch = epoch
+        with _told(path):
+            self._db = sqlite3.connect(
+                path, timeout=BUSY_TIMEOUT_S, isolation_level=None, check_same_thread=False
+            )
+            self._db.execute("PRAGMA journal_mode = WAL")
+            self._db.execute("PRAGMA synchronous = FULL")
+            self._db.execute("PRAGMA foreign_keys = ON")
+            version = self._db.execute("PRAGMA user_version").fetchone()[0]
+            if version == 0:
+                self._db.executescript(f"BEGIN;{_SCHEMA}PRAGMA user_version = {SCHEMA_VERSION};COMMIT;")
+            elif version != SCHEMA_VERSION:
+                raise StoreError(f"store {path} has schema {version}; this service reads {SCHEMA_VERSION}")
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._db.close()
+
+    def begin_epoch(self) -> int:
+        """Fence off every writer that was opened before; the service calls it once when it starts."""
+        with self._transaction(fenced=False):
+            self._db.execute("UPDATE service SET value = value + 1 WHERE key = 'epoch'")
+            row = self._db.execute("SELECT value FROM service WHERE key = 'epoch'").fetchone()
+        self.epoch = int(row[0])
+        return self.epoch
+
+    # runs
+
+    def insert_run(self, run: RunRecord, edit_events: tuple[EditEvent, ...] = ()) -> None:
+        """Add a run together with the history of its working list."""
+        with self._transaction():
+            self._db.execute(f"INSERT INTO runs ({_RUN}) VALUES ({_marks(RunRecord)})", astuple(run))
+            for event in edit_events:
+                self._insert_edit(event)
+            self._log(
+                run.run, "created", f"case {run.case}" + (f", parent {run.parent}" if run.parent else "")
+            )
+
+    def set_status(self, run: str, status: str, reason: str = "") -> None:
+        """Record a status move."""
+        with self._transaction():
+            self._db.execute(
+                "UPDATE runs SET status = ?, status_reason = ? WHERE run = ?", (status, reason, run)
+            )
+            self._log(run, status, reason)
+
+    def runs(self) -> list[RunRecord]:
+        """All runs in the order in which they were made."""
+        with _told(self._path):
+            rows = self._db.execute(f"SELECT {_RUN} FROM runs ORDER BY rowid").fetchall()
+        return [RunRecord(*row) for row in rows]
+
+    def interrupt_active(self, active: tuple[str, ...], status: str, reason: str) -> list[str]:
+        """Move every run whose status is in `active` to `status`; for the start after a crash."""
+        found = [run.run for run in self.runs() if run.status in active]
+        for run in found:
+            self.set_status(run, status, reason)
+        return found
+
+    # edits
+
+    def append_edit_event(self, event: EditEvent) -> None:
+        """Record one change of a working list; when this returns the change is safe."""
+        with self._transaction():
+            self._insert_edit(event)
+
+    def edit_events(self, run: str) -> list[EditEvent]:
+        """The changes of the working list of a run in order."""
+        with _told(self._path):
+            rows = self._db.execute(
+                "SELECT run, sequence, kind, edit FROM edit_events WHERE run = ? ORDER BY sequence", (run,)
+            ).fetchall()
+        return [EditEvent(name, sequence, EditEventKind(kind), edit) for name, sequence, kind, edit in rows]
+
+    def copied_edit_events(self, run: str, child: str) -> tuple[EditEvent, ...]:
+        """The history of a run under the name of its child."""
+        return tuple(replace(event, run=child) for event in self.edit_events(run))
+
+    # frames and checkpoints
+
+    def insert_frame(self, frame: FrameRecord) -> None:
+        """The commit of a frame: from here on it exists."""
+        with self._transaction():
+            self._db.execute(f"INSERT INTO frames ({_FRAME}) VALUES ({_marks(FrameRecord)})", astuple(frame))
+
+    def frames(self, run: str) -> list[FrameRecord]:
+        """The frames of one run by index."""
+        with _told(self._path):
+            rows = self._db.execute(
+                f'SELECT {_FRAME} FROM frames WHERE run = ? ORDER BY "index"', (run,)
+            ).fetchall()
+        return [FrameRecord(*row) for row in rows]
+
+    def segment_ends(self, run: str) -> dict[str, int]:
+        """Committed length of every segment file of a run."""
+        with _told(self._path):
+            rows = self._db.execute(
+                'SELECT segment, MAX("offset" + size) FROM frames WHERE run = ? GROUP BY segment', (run,)
+            ).fetchall()
+        return {str(segment): int(end) for segment, end in rows}
+
+    def insert_checkpoint(self, checkpoint: CheckpointRecord) -> None:
+        """The commit of a checkpoint."""
+        with self._transaction():
+            self._db.execute(
+                f"INSERT INTO checkpoints ({_CHECKPOINT}) VALUES ({_marks(CheckpointRecord)})",
+                astuple(checkpoint),
+            )
+
+    def delete_checkpoint(self, checkpoint: CheckpointRecord) -> None:
+        """Forget a checkpoint; its folder is removed afterwards."""
+        with self._transaction():
+            self._db.execute(
+                "DELETE FROM checkpoints WHERE run = ? AND name = ?", (checkpoint.run, checkpoint.name)
+            )
+
+    def checkpoints(self, run: str) -> list[CheckpointRecord]:
+        """The checkpoints of a run, earliest first."""
+        with _told(self._path):
+            rows = self._db.execute(
+                f"SELECT {_CHECKPOINT} FROM checkpoints WHERE run = ? ORDER BY step_count, name", (run,)
+            ).fetchall()
+        return [CheckpointRecord(*row) for row in rows]
+
+    # events
+
+    def log(self, run: str, kind: str, detail: str) -> None:
+        """Add a line to the log of a run."""
+        with self._transaction():
+            self._log(run, kind, detail)
+
+    def run_events(self, run: str) -> list[RunEvent]:
+        """The log of a run in order."""
+        with _told(self._path):
+            rows = self._db.execute(
+                "SELECT run, wall_time, kind, detail FROM run_events WHERE run = ? ORDER BY rowid", (run,)
+            ).fetchall()
+        return [RunEvent(*row) for row in rows]
+
+    def _insert_edit(self, event: EditEvent) -> None:
+        self._db.execute(
+            "INSERT INTO edit_events (run, sequence, kind, edit) VALUES (?, ?, ?, ?)",
+            (event.run, event.sequence, event.kind.value, event.edit),
+        )
+
+    def _log(self, run: str, kind: str, detail: str) -> None:
+        self._db.execute("INSERT INTO run_events VALUES (?, ?, ?, ?)", (run, time.time(), kind, detail))
+
+    @contextmanager
+    def _transaction(self, fenced: bool = True) -> Iterator[None]:
+        with _told(self._path):
+            self._db.execute("BEGIN IMMEDIATE")
+            try:
+                if fenced:
+                    self._check_epoch()
+                yield
+                self._db.execute("COMMIT")
+            except BaseException:
+                if self._db.in_transaction:
+                    self._db.execute("ROLLBACK")
+                raise
+
+    def _check_epoch(self) -> None:
+        current = self._db.execute("SELECT value FROM service WHERE key = 'epoch'").fetchone()[0]
+        if current != self.epoch:
+            raise StoreError(
+                f"store {self._path} was taken over by another service (epoch {current}, ours {self.epoch})"
+            )
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Turn what SQLite raises into one sentence."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise StoreError(f"store {path}: {error}") from error
