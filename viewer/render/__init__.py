@@ -13,6 +13,7 @@ from viewer.render.frame_inputs import (
     WaterPair,
     WaterStyle,
 )
+from viewer.render.picking import Unprojection, march_ray
 from viewer.render.renderer import Renderer
 
 __all__ = [
@@ -24,9 +25,11 @@ __all__ = [
     "LineStyle",
     "RenderOptions",
     "Renderer",
+    "Unprojection",
     "WaterFrame",
     "WaterPair",
     "WaterStyle",
     "check_context",
     "create_headless_context",
+    "march_ray",
 ]

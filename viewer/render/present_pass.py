@@ -1,4 +1,4 @@
-"""The last pass: puts the finished scene and the overlay into the target, by a triangle.
+"""The last pass: puts the finished scene into the target by a triangle.
 
 A triangle and not a blit, because a window's framebuffer need not be one that can be blitted into.
 """
@@ -13,38 +13,29 @@ __all__ = ["PresentPass"]
 
 
 class PresentPass:
-    """Scene plus overlay into the target."""
+    """Scene into the target."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         """Compile."""
         self._ctx = ctx
         self._program = build_program(ctx, "full_screen.vert", "present.frag")
-        set_uniforms(self._program, scene=0, overlay=1)
+        set_uniforms(self._program, scene=0)
         self._array = ctx.vertex_array(self._program, [])
 
-    def draw(
-        self,
-        target: moderngl.Framebuffer,
-        size: tuple[int, int],
-        scene: moderngl.Texture,
-        overlay: moderngl.Texture | None,
-    ) -> None:
-        """Draw.
+    def draw(self, target: moderngl.Framebuffer, size: tuple[int, int], scene: moderngl.Texture) -> int:
+        """Draw, and return the number of draws.
 
         Args:
             target: the framebuffer to end in.
             size: its size now [pixels]; a window's framebuffer object may remember an older one.
             scene: the finished scene.
-            overlay: premultiplied RGBA of the same size, first row on top; or None.
         """
         target.use()
         target.viewport = (0, 0, *size)
         self._ctx.enable_only(moderngl.NOTHING)
         scene.use(0)
-        if overlay is not None:
-            overlay.use(1)
-        set_uniforms(self._program, has_overlay=int(overlay is not None))
         self._array.render(moderngl.TRIANGLES, vertices=3)
+        return 1
 
     def release(self) -> None:
         """Give the memory back."""

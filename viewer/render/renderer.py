@@ -15,15 +15,25 @@ from viewer.render.context import check_context
 from viewer.render.frame_inputs import FrameInputs, FrameStats
 from viewer.render.frame_uniforms import FrameUniforms, sun_direction
 from viewer.render.ground_textures import GroundTextures
+from viewer.render.hud_pass import HudPass
+from viewer.render.line_pass import LinePass
+from viewer.render.picking import Unprojection
 from viewer.render.present_pass import PresentPass
 from viewer.render.render_target import RenderTarget
+from viewer.render.skirt_pass import SkirtPass
+from viewer.render.sky import SkyPass
 from viewer.render.terrain_lod import TerrainLod
 from viewer.render.terrain_pass import TerrainPass
+from viewer.render.water_pass import WaterPass
+from viewer.render.water_textures import WaterSlot, WaterTextures, combined_states
 from viewer.world.camera import Camera
-from viewer.world.coordinates import Point
+from viewer.world.coordinates import Point, WorldFrame
 from viewer.world.heightfield import Heightfield
 
 __all__ = ["Renderer"]
+
+_SKIRT_SHARE = 0.012
+"""Height of the map's walls below the lowest ground, as a share of the map's longer side."""
 
 
 class Renderer:
@@ -62,10 +72,16 @@ class Renderer:
         self._indices = BlockIndices(ctx, block_size, tiling.level_count)
         self._uniforms = FrameUniforms(ctx, (shape[0], shape[1]), tiling.stride, heightfield.grid.dx)
         self._terrain = TerrainPass(ctx, tiling, self._indices)
+        self._water_textures = WaterTextures(ctx, tiling, heightfield.grid.dx, heightfield.z_b)
+        self._water = WaterPass(ctx, tiling, self._indices)
+        self._skirt = SkirtPass(ctx, tiling)
+        self._lines = LinePass(ctx, heightfield)
+        self._sky = SkyPass(ctx)
         self._present = PresentPass(ctx)
+        self._hud = HudPass(ctx)
+        self._skirt_foot = heightfield.z_min - _SKIRT_SHARE * max(shape) * heightfield.grid.dx
         self._target: RenderTarget | None = None
-        self._inverse: npt.NDArray[np.float64] | None = None
-        self._frame = heightfield.frame
+        self._unprojection: Unprojection | None = None
 
     def draw(self, target: moderngl.Framebuffer, size: tuple[int, int], inputs: FrameInputs) -> FrameStats:
         """Draw one picture.
@@ -77,41 +93,47 @@ class Renderer:
 
         Returns:
             what it cost.
+
+        Raises:
+            TerrainDataError: if an array does not fit the terrain.
         """
         begun = perf_counter()
         options = inputs.options
         scene = self._scene_target(size, options.samples)
-        self._frame = self._heightfield.frame.exaggerated(options.exaggeration)
+        frame = self._heightfield.frame.exaggerated(options.exaggeration)
         sun = sun_direction(options.light_azimuth_deg, options.light_elevation_deg)
         dirty = self._ground.follow(sun, options.show_imagery, inputs.edits)
         if dirty is not None:
             self._lod.refresh(dirty)
+        self._lod.follow_edits(inputs.edits)
+        self._sky.follow(sun)
+        water = inputs.water if options.show_water else None
+        slots = None if water is None else self._water_textures.follow(water)
 
         selecting = perf_counter()
-        selection = self._lod.select(inputs, self._frame, size, None, 0.0)
+        states, depth_max = (None, 0.0) if slots is None else combined_states(*slots)
+        selection = self._lod.select(inputs, frame, size, states, depth_max)
         selected = perf_counter()
 
-        near, far = self._clip_planes(inputs.camera, size, selection)
-        view_projection = inputs.camera.projection(size[0] / size[1], near, far) @ inputs.camera.view_matrix()
-        self._inverse = np.linalg.inv(view_projection)
-        self._uniforms.write(inputs, self._frame, view_projection, size, self._heightfield.z_min)
-
-        scene.framebuffer.use()
-        scene.framebuffer.viewport = (0, 0, *size)
-        scene.framebuffer.clear(*options.background, 1.0)
-        draws = self._terrain.draw(self._ground, selection.terrain, options) if options.show_terrain else 0
+        near, far = self._clip_planes(inputs.camera, frame, size, selection)
+        view = inputs.camera.view_matrix()
+        projection = inputs.camera.projection(size[0] / size[1], near, far)
+        self._unprojection = Unprojection(np.linalg.inv(projection @ view), size, frame)
+        self._uniforms.write(inputs, frame, projection @ view, size, self._skirt_foot)
+        draws = self._draw_scene(scene, inputs, selection, slots, projection, view)
         scene.resolve()
-        self._present.draw(target, size, scene.colour, None)
+        draws += self._present.draw(target, size, scene.colour)
+        draws += self._hud.draw(target, size, inputs)
         done = perf_counter()
         stats = selection.stats
         return FrameStats(
             terrain_triangles=stats.terrain_triangles if options.show_terrain else 0,
             water_triangles=stats.water_triangles,
-            terrain_blocks=stats.terrain_blocks,
+            terrain_blocks=stats.terrain_blocks if options.show_terrain else 0,
             water_blocks=stats.water_blocks,
             culled_blocks=stats.culled_blocks,
             covered_blocks=stats.covered_blocks,
-            draws=draws + 1,
+            draws=draws,
             near=near,
             far=far,
             selection_ms=1e3 * (selected - selecting),
@@ -126,23 +148,29 @@ class Renderer:
             y: from the top [pixels].
 
         Returns:
-            grid coordinates and elevation (x, y, z) [m, datum-relative], or None where there is only sky.
+            grid coordinates and elevation (x, y, z) [m, datum-relative] on whatever is drawn there, ground or
+            water; None where there is only sky.
         """
-        if self._target is None or self._inverse is None:
+        if self._target is None or self._unprojection is None:
             return None
         width, height = self._target.size
         column, row = math.floor(x), height - 1 - math.floor(y)
         if not (0 <= column < width and 0 <= row < height):
             return None
         depth = self._target.depth_at(column, row)
-        if depth >= 1.0:
-            return None
-        ndc = np.array(
-            [2.0 * (column + 0.5) / width - 1.0, 2.0 * (row + 0.5) / height - 1.0, 2.0 * depth - 1.0, 1.0]
-        )
-        world = self._inverse @ ndc
-        world = world[:3] / world[3]
-        return self._frame.from_world((float(world[0]), float(world[1]), float(world[2])))
+        return None if depth >= 1.0 else self._unprojection.place(column, row, depth)
+
+    def read_depth(self) -> tuple[npt.NDArray[np.float32], Unprojection]:
+        """Depths of the last picture (0 to 1, shape [height, width], lowest row first) and the way back from them.
+
+        Raises:
+            RuntimeError: before the first picture.
+        """
+        if self._target is None or self._unprojection is None:
+            raise RuntimeError("no picture has been drawn yet")
+        width, height = self._target.size
+        depth = np.frombuffer(self._target.read_depth(), dtype="<f4").reshape(height, width)
+        return depth, self._unprojection
 
     def read_pixels(self, framebuffer: moderngl.Framebuffer, size: tuple[int, int]) -> npt.NDArray[np.uint8]:
         """The colours of a framebuffer, shape [height, width, 3], first row on top."""
@@ -151,17 +179,43 @@ class Renderer:
 
     def release(self) -> None:
         """Give all graphics memory back."""
-        for thing in (
-            self._terrain,
-            self._present,
-            self._ground,
-            self._indices,
-            self._uniforms,
-            self._target,
-        ):
-            if thing is not None:
-                thing.release()
+        passes = (self._terrain, self._water, self._skirt, self._lines, self._sky, self._present, self._hud)
+        for thing in (*passes, self._water_textures, self._ground, self._indices, self._uniforms):
+            thing.release()
+        if self._target is not None:
+            self._target.release()
         self._target = None
+
+    def _draw_scene(
+        self,
+        scene: RenderTarget,
+        inputs: FrameInputs,
+        selection: Selection,
+        slots: tuple[WaterSlot, WaterSlot] | None,
+        projection: npt.NDArray[np.float64],
+        view: npt.NDArray[np.float64],
+    ) -> int:
+        options = inputs.options
+        scene.framebuffer.use()
+        scene.framebuffer.viewport = (0, 0, *scene.size)
+        scene.framebuffer.clear(*options.background, 1.0)
+        draws = 0
+        if options.show_sky:
+            rotation = view.copy()
+            rotation[:3, 3] = 0.0
+            draws += self._sky.draw(np.linalg.inv(projection @ rotation))
+        if options.show_terrain:
+            draws += self._terrain.draw(self._ground, selection.terrain, options)
+        if options.show_skirt:
+            draws += self._skirt.draw(self._ground, selection)
+        if slots is not None and inputs.water is not None:
+            alpha = inputs.water.alpha
+            draws += self._water.draw(self._ground, slots, alpha, self._sky.texture, selection.water, options)
+            if options.show_skirt:
+                draws += self._skirt.draw(self._ground, selection, slots, alpha)
+        if inputs.edits is not None:
+            draws += self._lines.draw(inputs.edits.lines)
+        return draws
 
     def _scene_target(self, size: tuple[int, int], samples: int) -> RenderTarget:
         target = self._target
@@ -172,13 +226,14 @@ class Renderer:
         return target
 
     def _clip_planes(
-        self, camera: Camera, size: tuple[int, int], selection: Selection
+        self, camera: Camera, frame: WorldFrame, size: tuple[int, int], selection: Selection
     ) -> tuple[float, float]:
         """As tight as the boxes in view allow: 24 bits of depth are few for a flood seen from far."""
         tan_y = math.tan(0.5 * camera.fov_y)
         corner = math.sqrt(1.0 + tan_y * tan_y * (1.0 + (size[0] / size[1]) ** 2))
-        ground = float(self._heightfield.world_height(camera.eye[0], camera.eye[2], self._frame))
+        ground = float(self._heightfield.world_height(camera.eye[0], camera.eye[2], frame))
         above = max(float(camera.eye[1]) - ground, 0.0)
         near = max(0.9 * selection.distance_min / corner, 0.25 * above, 0.5)
         near = min(near, 1e5)
-        return near, max(1.1 * selection.distance_max, 2.0 * near)
+        # The walls of the map reach below the boxes.
+        return near, max(1.2 * selection.distance_max, 2.0 * near)

@@ -6,11 +6,13 @@ import numpy as np
 import numpy.typing as npt
 
 from viewer.lod import BlockSelector, BlockTiling, Selection, SwitchTable, block_bounds, block_errors
-from viewer.render.frame_inputs import FrameInputs
+from viewer.render.frame_inputs import EditOverlay, FrameInputs
 from viewer.world.coordinates import WorldFrame
 from viewer.world.heightfield import Heightfield, Rect
 
 __all__ = ["TerrainLod"]
+
+_PARTIAL, _WET = 1, 2
 
 
 class TerrainLod:
@@ -23,6 +25,8 @@ class TerrainLod:
         self._bounds = block_bounds(heightfield.z_b, tiling)
         self._table = SwitchTable(block_errors(heightfield.z_b, tiling))
         self._selector = BlockSelector(tiling, heightfield.grid.dx, self._table, self._bounds)
+        self._edited: npt.NDArray[np.bool_] | None = None
+        self._edit_revision: int | None = None
 
     def refresh(self, dirty: Rect) -> None:
         """Redo errors and bounds of the blocks that hold a vertex of a rectangle of cells."""
@@ -31,11 +35,20 @@ class TerrainLod:
         row0, row1 = int(tiling.row_start[b_row0]), int(tiling.row_end[b_row1 - 1]) + 1
         col0, col1 = int(tiling.col_start[b_col0]), int(tiling.col_end[b_col1 - 1]) + 1
         z = self._heightfield.z_b[row0:row1, col0:col1]
-        part = BlockTiling(*z.shape, tiling.block_size)
+        part = BlockTiling(z.shape[0], z.shape[1], tiling.block_size)
         bounds = block_bounds(z, part)
         window = (slice(b_row0, b_row1), slice(b_col0, b_col1))
         self._bounds.z_min[window], self._bounds.z_max[window] = bounds.z_min, bounds.z_max
         self._table.update(block_errors(z, part), blocks)
+
+    def follow_edits(self, edits: EditOverlay | None) -> None:
+        """Note which blocks hold an edited vertex: they are drawn at full resolution."""
+        revision = None if edits is None else edits.revision
+        if revision != self._edit_revision:
+            self._edited = None
+            if edits is not None:
+                self._edited = self.tiling.reduce(np.logical_or, edits.sign != 0).astype(np.bool_).ravel()
+            self._edit_revision = revision
 
     def select(
         self,
@@ -47,6 +60,9 @@ class TerrainLod:
     ) -> Selection:
         """Choose the blocks of a picture."""
         options = inputs.options
+        if states is not None and self._edited is not None:
+            # A levee may rise out of a block that is wet all over, so its ground must be drawn.
+            states = np.where(self._edited & (states == _WET), _PARTIAL, states).astype(np.uint8)
         return self._selector.select(
             inputs.camera,
             frame,
@@ -54,6 +70,7 @@ class TerrainLod:
             options.tau_px,
             states=states,
             depth_max=depth_max,
+            pinned=self._edited,
             water_spacing_px=options.water_spacing_px,
             partial_spacing_px=options.partial_spacing_px,
             cull=options.cull,

@@ -82,8 +82,8 @@ class EditDocument:
         edited = apply_edits(self._base, list(edits), self._grid)
         self.revision, self.edits = revision, tuple(edits)
         self.can_undo, self.can_redo = can_undo, can_redo
-        self._stale = union_rect(self._stale, union_rect(self._committed_dirty, edited.dirty))
-        self._committed, self._committed_dirty = edited.z_b, edited.dirty
+        self._stale = union_rect(self._stale, union_rect(self._committed_dirty, _rect(edited.dirty)))
+        self._committed, self._committed_dirty = edited.z_b, _rect(edited.dirty)
 
     def set_draft(self, edit: Edit | None) -> None:
         """Set, replace or (with None) drop the edit being drawn."""
@@ -105,7 +105,7 @@ class EditDocument:
         z_b, draft_dirty = self._committed, None
         if self._draft is not None:
             edited = apply_edits(self._committed, [self._draft], self._grid)
-            z_b, draft_dirty = edited.z_b, edited.dirty
+            z_b, draft_dirty = edited.z_b, _rect(edited.dirty)
         dirty = union_rect(self._stale, union_rect(self._draft_dirty, draft_dirty))
         self._stale, self._draft_dirty, self._draft_changed = None, draft_dirty, False
         if dirty is None:
@@ -115,3 +115,8 @@ class EditDocument:
         sign[window] = np.sign(z_b[window] - self._base[window]).astype(np.int8)
         self._preview = EditPreview(z_b, sign, dirty, self._preview.revision + 1)
         return self._preview
+
+
+def _rect(dirty: Rect | None) -> Rect | None:
+    """A rectangle of the protocol (rows, then columns) as the viewer has it (first corner, then end corner)."""
+    return None if dirty is None else (dirty[0], dirty[2], dirty[1], dirty[3])

@@ -1,0 +1,143 @@
+"""The panels written on a picture, made with Pillow: text, legend, scale bar and north arrow, banners."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+from PIL import Image, ImageDraw, ImageFont
+
+from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, depth_class_labels
+
+__all__ = ["banner_panel", "depth_ramp_panel", "legend_panel", "nice_length", "scale_panel", "text_panel"]
+
+_INK = (255, 255, 255, 255)
+_SOFT_INK = (214, 222, 230, 255)
+_PLATE = (14, 24, 34, 168)
+_MARGIN = 12
+
+NATURAL_RAMP = ((128, 160, 150), (88, 140, 155), (58, 110, 145), (36, 84, 124), (20, 62, 104))
+"""Roughly what water of the depths in `depth_ramp_panel` looks like."""
+NATURAL_RAMP_DEPTHS = ("0", "0.5", "1", "3", "10 m")
+
+
+@cache
+def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    return ImageFont.load_default(size)
+
+
+def _plate(
+    width: int, height: int, colour: tuple[int, int, int, int] = _PLATE
+) -> tuple[Image.Image, ImageDraw.ImageDraw]:
+    image = Image.new("RGBA", (width, height), (0, 0, 0, 0))
+    draw = ImageDraw.Draw(image)
+    draw.rounded_rectangle((0, 0, width - 1, height - 1), radius=8, fill=colour)
+    return image, draw
+
+
+def _extent(text: str, size: int) -> tuple[int, int]:
+    left, top, right, bottom = _font(size).getbbox(text or " ")
+    return math.ceil(right - min(left, 0)), math.ceil(bottom - min(top, 0))
+
+
+def text_panel(title: str, time: str, detail: str, scale: float) -> Image.Image:
+    """Title, a large time, and lines of detail."""
+    rows = [(title, round(17 * scale), _SOFT_INK), (time, round(27 * scale), _INK)]
+    rows += [(line, round(15 * scale), _SOFT_INK) for line in detail.split("\n")]
+    rows = [row for row in rows if row[0]]
+    margin, gap = round(_MARGIN * scale), round(5 * scale)
+    sizes = [_extent(text, size) for text, size, _ in rows]
+    width = max(w for w, _ in sizes) + 2 * margin
+    height = sum(h for _, h in sizes) + gap * (len(rows) - 1) + 2 * margin
+    image, draw = _plate(width, height)
+    y = margin
+    for (text, size, ink), (_, h) in zip(rows, sizes, strict=True):
+        draw.text((margin, y), text, font=_font(size), fill=ink)
+        y += h + gap
+    return image
+
+
+def legend_panel(scale: float) -> Image.Image:
+    """The depth classes with their limits in metres."""
+    labels = depth_class_labels()
+    size, row = round(15 * scale), round(22 * scale)
+    margin, box = round(_MARGIN * scale), round(26 * scale)
+    heading = "Water depth [m]"
+    width = max(
+        _extent(heading, size)[0], box + round(10 * scale) + max(_extent(text, size)[0] for text in labels)
+    )
+    image, draw = _plate(width + 2 * margin, row * (len(labels) + 1) + 2 * margin)
+    draw.text((margin, margin), heading, font=_font(size), fill=_INK)
+    # Deep on top, as water stands.
+    for k, (text, colour) in enumerate(
+        zip(reversed(labels), reversed(DEPTH_CLASS_COLOURS), strict=True), start=1
+    ):
+        y = margin + k * row
+        draw.rectangle((margin, y + 2, margin + box, y + row - 3), fill=(*colour, 255))
+        draw.text((margin + box + round(10 * scale), y), text, font=_font(size), fill=_SOFT_INK)
+    return image
+
+
+def depth_ramp_panel(scale: float) -> Image.Image:
+    """A hint at what natural water of different depths looks like."""
+    size, margin = round(15 * scale), round(_MARGIN * scale)
+    step, bar = round(42 * scale), round(14 * scale)
+    width = step * len(NATURAL_RAMP) + 2 * margin
+    image, draw = _plate(width, round(66 * scale) + margin)
+    draw.text((margin, round(8 * scale)), "Water depth", font=_font(size), fill=_INK)
+    y = round(34 * scale)
+    for k, (colour, text) in enumerate(zip(NATURAL_RAMP, NATURAL_RAMP_DEPTHS, strict=True)):
+        x = margin + k * step
+        draw.rectangle((x, y, x + step - 1, y + bar), fill=(*colour, 255))
+        draw.text((x + 1, y + bar + round(3 * scale)), text, font=_font(round(13 * scale)), fill=_SOFT_INK)
+    return image
+
+
+def nice_length(longest: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is not above a length > 0."""
+    power = 10.0 ** math.floor(math.log10(longest))
+    return next(power * k for k in (5.0, 2.0, 1.0) if power * k <= longest * (1.0 + 1e-9))
+
+
+def scale_panel(metres_per_pixel: float, bearing_deg: float, scale: float) -> Image.Image:
+    """A scale bar (true at the centre of the picture) and an arrow to the north.
+
+    Args:
+        metres_per_pixel: at the point that the camera looks at.
+        bearing_deg: compass bearing of the view [degrees].
+        scale: size of the panel, 1 for a picture 720 pixels high.
+    """
+    margin, longest = round(_MARGIN * scale), 150.0 * scale
+    length = nice_length(longest * metres_per_pixel)
+    pixels = round(length / metres_per_pixel)
+    label = f"{length / 1000:g} km" if length >= 1000.0 else f"{length:g} m"
+    width, height = round(longest + 70 * scale) + 2 * margin, round(58 * scale)
+    image, draw = _plate(width, height)
+    y = height - margin - round(4 * scale)
+    draw.text((margin, margin - round(3 * scale)), label, font=_font(round(15 * scale)), fill=_INK)
+    line = max(2, round(2 * scale))
+    draw.line((margin, y, margin + pixels, y), fill=_INK, width=line)
+    for x in (margin, margin + pixels):
+        draw.line((x, y - round(5 * scale), x, y + round(3 * scale)), fill=_INK, width=line)
+
+    centre_x, centre_y, r = width - margin - 18 * scale, height / 2, 19 * scale
+    a = math.radians(-bearing_deg)
+
+    def at(angle: float, radius: float) -> tuple[float, float]:
+        return centre_x + radius * math.sin(a + angle), centre_y - radius * math.cos(a + angle)
+
+    draw.polygon([at(0.0, r), at(2.6, r * 0.75), at(math.pi, r * 0.35)], fill=(235, 90, 70, 255))
+    draw.polygon([at(0.0, r), at(-2.6, r * 0.75), at(math.pi, r * 0.35)], fill=(255, 190, 175, 255))
+    x, y = at(0.0, r + 1 * scale)
+    draw.text((centre_x - 34 * scale, centre_y), "N", font=_font(round(15 * scale)), fill=_INK, anchor="lm")
+    return image
+
+
+def banner_panel(text: str, scale: float, alert: bool) -> Image.Image:
+    """One line that must not be overlooked: amber for a remark, red for an alert."""
+    size, margin = round(19 * scale), round(_MARGIN * scale)
+    width, height = _extent(text, size)
+    colour = (176, 32, 32, 232) if alert else (242, 176, 32, 236)
+    image, draw = _plate(width + 2 * margin, height + round(1.2 * margin), colour)
+    draw.text((margin, round(0.6 * margin)), text, font=_font(size), fill=_INK if alert else (30, 22, 0, 255))
+    return image

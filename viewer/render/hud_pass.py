@@ -1,0 +1,133 @@
+"""Draws the panels over the finished scene; each is made anew only when what it says changes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+from PIL import Image
+
+from viewer.render import hud_panels
+from viewer.render.frame_inputs import FrameInputs, HudText, WaterStyle
+from viewer.render.shader_library import build_program, set_uniforms
+from viewer.world.camera import Camera
+
+__all__ = ["HudPass"]
+
+_EDGE = 14
+HYPOTHETICAL = "HYPOTHETICAL SCENARIO - NOT A REAL EVENT"
+
+
+@dataclass
+class _Panel:
+    says: Hashable
+    texture: moderngl.Texture
+
+
+class HudPass:
+    """The panels of a picture."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        """Compile."""
+        self._ctx = ctx
+        self._program = build_program(ctx, "sprite.vert", "sprite.frag")
+        set_uniforms(self._program, picture_of_text=0)
+        self._array = ctx.vertex_array(self._program, [])
+        self._panels: dict[str, _Panel] = {}
+
+    def draw(self, target: moderngl.Framebuffer, size: tuple[int, int], inputs: FrameInputs) -> int:
+        """Draw the panels that the inputs ask for, and return the number of draws."""
+        hud = inputs.hud
+        if hud is None:
+            return 0
+        target.use()
+        target.viewport = (0, 0, *size)
+        self._ctx.enable_only(moderngl.BLEND)
+        self._ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        scale = min(max(size[1] / 720.0, 0.6), 3.0)
+        edge = round(_EDGE * scale)
+        draws = self._draw_corners(hud, inputs, size, scale, edge)
+        top = edge
+        banners = (
+            ("notice", hud.notice, True),
+            ("hypothetical", HYPOTHETICAL if hud.is_hypothetical else "", False),
+        )
+        for name, text, alert in banners:
+            if text:
+                texture = self._panel(
+                    name, (text, scale), lambda t=text, a=alert: hud_panels.banner_panel(t, scale, a)
+                )
+                self._blit(texture, size, (size[0] - texture.width) // 2, top)
+                top += texture.height + edge // 2
+                draws += 1
+        return draws
+
+    def release(self) -> None:
+        """Give the memory back."""
+        for panel in self._panels.values():
+            panel.texture.release()
+        self._array.release()
+        self._program.release()
+
+    def _draw_corners(
+        self, hud: HudText, inputs: FrameInputs, size: tuple[int, int], scale: float, edge: int
+    ) -> int:
+        draws = 0
+        if hud.title or hud.time or hud.detail:
+            says = (hud.title, hud.time, hud.detail, scale)
+            texture = self._panel("text", says, lambda: hud_panels.text_panel(*says))
+            self._blit(texture, size, edge, edge)
+            draws += 1
+        if hud.legend and inputs.water is not None and inputs.options.show_water:
+            by_class = inputs.options.water_style is WaterStyle.DEPTH_CLASSES
+            make = hud_panels.legend_panel if by_class else hud_panels.depth_ramp_panel
+            texture = self._panel("legend", (by_class, scale), lambda: make(scale))
+            self._blit(texture, size, edge, size[1] - texture.height - edge)
+            draws += 1
+        if hud.scale_and_north:
+            metres, bearing = _scale_and_bearing(inputs.camera, size)
+            texture = self._panel(
+                "scale", (metres, bearing, scale), lambda: hud_panels.scale_panel(metres, bearing, scale)
+            )
+            self._blit(texture, size, size[0] - texture.width - edge, size[1] - texture.height - edge)
+            draws += 1
+        return draws
+
+    def _panel(self, name: str, says: Hashable, make: Callable[[], Image.Image]) -> moderngl.Texture:
+        panel = self._panels.get(name)
+        if panel is not None and panel.says == says:
+            return panel.texture
+        pixels = np.asarray(make()).astype(np.uint16)
+        pixels[..., :3] = pixels[..., :3] * pixels[..., 3:] // 255  # premultiplied, so that edges filter well
+        size = (pixels.shape[1], pixels.shape[0])
+        if panel is None or panel.texture.size != size:
+            if panel is not None:
+                panel.texture.release()
+            panel = _Panel(says, self._ctx.texture(size, 4))
+            panel.texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+            panel.texture.repeat_x = panel.texture.repeat_y = False
+            self._panels[name] = panel
+        panel.texture.write(pixels.astype(np.uint8))
+        panel.says = says
+        return panel.texture
+
+    def _blit(self, texture: moderngl.Texture, size: tuple[int, int], left: int, top: int) -> None:
+        width, height = size
+        window = (
+            2.0 * left / width - 1.0,
+            1.0 - 2.0 * (top + texture.height) / height,
+            2.0 * texture.width / width,
+            2.0 * texture.height / height,
+        )
+        set_uniforms(self._program, window=window)
+        texture.use(0)
+        self._array.render(moderngl.TRIANGLE_STRIP, vertices=4)
+
+
+def _scale_and_bearing(camera: Camera, size: tuple[int, int]) -> tuple[float, float]:
+    """Metres a pixel at the target, and the bearing, both rounded so that small moves redraw nothing."""
+    metres = 2.0 * math.tan(0.5 * camera.fov_y) * camera.distance / size[1]
+    return float(f"{metres:.3g}"), float(round(math.degrees(camera.azimuth)))

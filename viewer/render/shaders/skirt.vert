@@ -1,0 +1,42 @@
+#version 410 core
+// The walls of the map: of earth below the ground, of water below the surface. One instance is one side of a block.
+#include "common/frame.glsl"
+in uvec2 in_block;
+in uvec2 in_side;            // side (0 west, 1 east, 2 south, 3 north), level of the block
+uniform sampler2D height;
+uniform int of_water;
+uniform sampler2D bed_first;
+uniform sampler2D bed_second;
+uniform sampler2D depth_first;
+uniform sampler2D depth_second;
+uniform float alpha;
+out float elevation;
+out float below;             // depth below the upper edge [m]
+out float clear_air;
+flat out vec3 normal;
+
+float drawn(sampler2D depths, sampler2D beds, ivec2 cell, float ground) {
+    return texelFetch(depths, cell, 0).r - max(ground - texelFetch(beds, cell, 0).r, 0.0);
+}
+
+void main() {
+    int stride = int(grid.z);
+    ivec2 last = ivec2(grid.xy) - 1;
+    int along = ((gl_VertexID >> 1) >> in_side.y) << in_side.y;
+    ivec2 cell = min(ivec2(in_block) * stride + (in_side.x < 2u ? ivec2(0, along) : ivec2(along, 0)), last);
+    if (in_side.x == 1u) cell.x = last.x;
+    if (in_side.x == 3u) cell.y = last.y;
+    float ground = texelFetch(height, cell, 0).r;
+    float top = ground, foot = vertical.w;
+    if (of_water != 0) {
+        float depth = mix(drawn(depth_first, bed_first, cell, ground), drawn(depth_second, bed_second, cell, ground), alpha);
+        foot = ground;
+        top = ground + max(depth, 0.0);
+    }
+    elevation = (gl_VertexID & 1) == 0 ? top : foot;
+    below = top - elevation;
+    normal = in_side.x == 0u ? vec3(-1, 0, 0) : in_side.x == 1u ? vec3(1, 0, 0) : in_side.x == 2u ? vec3(0, 0, 1) : vec3(0, 0, -1);
+    vec3 world = world_of_cell(vec2(cell), elevation);
+    clear_air = air_transmission(world);
+    gl_Position = view_projection * vec4(world, 1.0);
+}

@@ -1,0 +1,72 @@
+#version 410 core
+// Reflection of the sky (Schlick 1994) over ground seen through water that darkens it with depth (Beer and Lambert).
+#include "common/frame.glsl"
+#include "common/ground.glsl"
+in vec2 uv;
+in vec3 world;
+in float depth;
+in vec2 slope;
+in float clear_air;
+uniform samplerCube sky;
+uniform sampler2D ripples;       // slopes of small waves, tiled
+uniform int depth_classes;       // 0 natural, 1 classes
+uniform float class_limits[6];
+uniform vec3 class_colours[7];
+out vec4 colour;
+
+const vec3 ABSORPTION = vec3(0.95, 0.38, 0.30); // [1/m]
+const vec3 SCATTER_SHALLOW = vec3(0.26, 0.47, 0.52);
+const vec3 SCATTER_DEEP = vec3(0.045, 0.20, 0.36);
+const float F0 = 0.0204;                        // ((1 - 1.333) / (1 + 1.333))^2
+
+vec3 class_colour(float h) {
+    float soft = max(fwidth(h), 1e-4);
+    vec3 c = class_colours[0];
+    for (int k = 0; k < 6; ++k) {
+        c = mix(c, class_colours[k + 1], smoothstep(-0.5, 0.5, (h - class_limits[k]) / soft));
+    }
+    return c;
+}
+
+void main() {
+    // A film too thin to be shown is drawn as the ground below it: under fully wet blocks there is no other ground.
+    if (depth <= 0.0) discard;
+    vec3 sight = normalize(world - eye.xyz);
+    float far = distance(world, eye.xyz);
+    // Small waves fade with distance and in films too thin to carry them.
+    float lively = smoothstep(0.0, 0.4, depth) / (1.0 + far / (60.0 * grid.w));
+    vec2 small = (texture(ripples, world.xz / 47.0).rg + texture(ripples, world.zx / 173.0).rg - 1.0) * 0.22 * lively;
+    vec3 normal = normalize(vec3(-(slope * vertical.x + small).x, 1.0, -(slope * vertical.x + small).y));
+
+    float facing = clamp(-dot(sight, normal), 0.0, 1.0);
+    float once = 1.0 - facing;
+    float fresnel = F0 + (1.0 - F0) * once * once * once * once * once;
+    float edge = smoothstep(picture.z, picture.z + 0.12, depth);
+
+    // The refracted ray meets the bottom a little farther on.
+    vec3 bent = refract(sight, normal, 0.75);
+    float path = depth / max(-bent.y, 0.3);
+    vec2 shift = bent.xz * min(path, 4.0 * grid.w) * edge;
+    vec2 bottom_uv = uv + vec2(shift.x, -shift.y) / (grid.xy * grid.w);
+    vec3 bottom = ground_at(bottom_uv, (world.y - vertical.y) / vertical.x + vertical.y - depth);
+
+    vec3 surface;
+    if (depth_classes == 1) {
+        vec3 tint = class_colour(depth);
+        float shade = 0.80 + 0.25 * dot(normal, sun.xyz);
+        surface = mix(bottom, tint * shade, 0.86 * edge);
+        surface += edge * 0.12 * fresnel * texture(sky, reflect(sight, normal)).rgb;
+    } else {
+        vec3 through = exp(-ABSORPTION * path * 0.75);
+        vec3 scatter = mix(SCATTER_SHALLOW, SCATTER_DEEP, 1.0 - exp(-depth * 0.28));
+        // Flood water is never clear: even a thin sheet veils the ground, so that its extent can be read from afar.
+        through *= 1.0 - 0.38 * edge;
+        surface = bottom * through + scatter * (1.0 - through);
+        vec3 mirror = reflect(sight, normal);
+        mirror.y = abs(mirror.y);
+        vec3 reflected = texture(sky, mirror).rgb;
+        float glint = pow(max(dot(mirror, sun.xyz), 0.0), 350.0) * 1.6;
+        surface = mix(surface, reflected, fresnel * edge) + glint * edge * vec3(1.0, 0.95, 0.85);
+    }
+    colour = vec4(mix(horizon.rgb, surface, clear_air), 1.0);
+}

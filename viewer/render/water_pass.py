@@ -1,0 +1,98 @@
+"""Draws the flood: the surface over partial and wet blocks, with what it mirrors and what is seen through it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from viewer.lod.block_tiling import BlockTiling
+from viewer.render.block_mesh import BlockIndices, BlockInstances
+from viewer.render.frame_inputs import RenderOptions, WaterStyle
+from viewer.render.ground_textures import GroundTextures
+from viewer.render.shader_library import build_program, set_uniforms
+from viewer.render.water_textures import WaterSlot
+from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, DEPTH_CLASS_LIMITS
+
+__all__ = ["WaterPass", "ripple_slopes"]
+
+_RIPPLE_SIDE = 256
+_SEED = 2011
+
+
+def ripple_slopes(side: int = _RIPPLE_SIDE) -> npt.NDArray[np.uint8]:
+    """Slopes of a small, tileable sea, 128 for level, shape [side, side, 2].
+
+    A sum of plane waves with whole numbers of wave lengths along the tile, so that it repeats without a seam.
+    """
+    rng = np.random.default_rng(_SEED)
+    at = np.arange(side) * (2.0 * np.pi / side)
+    slopes = np.zeros((side, side, 2))
+    for _ in range(48):
+        k, bearing, phase = rng.integers(2, 15), rng.normal(0.6, 0.9), rng.uniform(0.0, 2.0 * np.pi)
+        kx, kz = round(k * np.cos(bearing)), round(k * np.sin(bearing))
+        wave = np.cos(kx * at[None, :] + kz * at[:, None] + phase) / (1.0 + 0.15 * k)
+        slopes += wave[..., None] * np.array([kx, kz]) / max(np.hypot(kx, kz), 1.0)
+    slopes /= np.abs(slopes).max()
+    return np.clip(128.0 + 127.0 * slopes, 0, 255).astype(np.uint8)
+
+
+class WaterPass:
+    """The water surface."""
+
+    def __init__(self, ctx: moderngl.Context, tiling: BlockTiling, indices: BlockIndices) -> None:
+        """Compile and allocate."""
+        self._ctx = ctx
+        self._program = build_program(ctx, "water.vert", "water.frag")
+        names = ("height", "ground_colour", "edit_mask", "sky", "ripples", "bed_first", "bed_second")
+        names += ("depth_first", "depth_second", "slope_first", "slope_second")
+        set_uniforms(self._program, **{name: unit for unit, name in enumerate(names)})
+        set_uniforms(
+            self._program,
+            class_limits=list(DEPTH_CLASS_LIMITS),
+            class_colours=[tuple(c / 255.0 for c in colour) for colour in DEPTH_CLASS_COLOURS],
+        )
+        self._blocks = BlockInstances(ctx, self._program, indices, tiling.block_count)
+        self._ripples = ctx.texture((_RIPPLE_SIDE, _RIPPLE_SIDE), 2, ripple_slopes())
+        self._ripples.build_mipmaps()
+        self._ripples.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+
+    def draw(
+        self,
+        ground: GroundTextures,
+        slots: tuple[WaterSlot, WaterSlot],
+        alpha: float,
+        sky: moderngl.TextureCube,
+        by_level: Sequence[npt.NDArray[np.void]],
+        options: RenderOptions,
+    ) -> int:
+        """Draw the selected blocks, and return the number of draws."""
+        first, second = slots
+        assert first.bed is not None
+        assert second.bed is not None
+        ground.bind(height=0, colour=1, mask=2)
+        sky.use(3)
+        self._ripples.use(4)
+        textures = (first.bed, second.bed, first.depth, second.depth, first.slope, second.slope)
+        for unit, texture in enumerate(textures, start=5):
+            texture.use(unit)
+        self._ctx.enable_only(moderngl.DEPTH_TEST)
+        self._ctx.depth_func = "<="
+        self._ctx.wireframe = options.wireframe
+        set_uniforms(
+            self._program,
+            alpha=alpha,
+            snap_edges=int(options.snap_edges),
+            depth_classes=int(options.water_style is WaterStyle.DEPTH_CLASSES),
+        )
+        draws = self._blocks.draw(by_level)
+        self._ctx.wireframe = False
+        return draws
+
+    def release(self) -> None:
+        """Give the memory back."""
+        self._blocks.release()
+        self._ripples.release()
+        self._program.release()
