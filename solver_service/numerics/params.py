@@ -23,7 +23,7 @@ class SolverParams:
     """Order in space and time."""
     riemann: Literal["hllc", "hll"] = "hllc"
     """Riemann solver."""
-    limiter_theta: float = 1.3
+    limiter_theta: float = 1.5
     """Generalised minmod parameter [1]: 1 is minmod, nearer 2 is sharper; 1 <= theta < 2."""
     depth_dry: float = 1e-3
     """Water no deeper than this has no velocity [m]."""

@@ -25,8 +25,12 @@ import warp as wp
 
 from solver_service.numerics.friction import GRAVITY, inverse_cube_root
 
-LEVEL_TOLERANCE = wp.constant(4.8e-7)
-"""Difference of eta between neighbours that counts as none, in units of the larger depth (four float32 ulps) [1]."""
+LEVEL_TOLERANCE = wp.constant(1.5e-7)
+"""Difference of eta between neighbours that counts as none, in units of the larger depth [1].
+
+Rounding alone gives less than 2^-23 = 1.2e-7. A larger tolerance would hold small slopes fast: with 4.8e-7 the
+measured order in smooth flow falls from 1.96 to 1.78.
+"""
 
 DRAIN_LIMIT = wp.constant(0.999)
 """Part of a cell's water that may leave in one step [1]; the rest is room for rounding."""
