@@ -1,4 +1,7 @@
-"""Choosing, for one picture, which blocks are drawn and at which level: flat and vectorised over all blocks."""
+"""Choosing, for one picture, which blocks are drawn and at which level.
+
+Flat and vectorised over all blocks.
+"""
 
 from __future__ import annotations
 
@@ -111,7 +114,8 @@ class BlockSelector:
             frame: world frame with the vertical exaggeration drawn.
             size: width and height of the picture [pixels].
             tau_px: screen error allowed [pixels].
-            states: water state of each block (0 dry, 1 partial, 2 wet), shape [block_count]; None for no water.
+            states: water state of each block (0 dry, 1 partial, 2 wet), shape [block_count]; None for no
+                water.
             depth_max: deepest water anywhere [m]; boxes of blocks with water reach that much higher.
             pinned: blocks held at full resolution (edited, errors not refreshed yet), shape [block_count].
             water_spacing_px: spacing of vertices allowed in fully wet blocks [pixels]; 0 draws all vertices.
@@ -166,7 +170,8 @@ class BlockSelector:
         if spacing_px <= 0.0:
             return np.zeros(distance.shape, dtype=np.uint8)
         cells = np.maximum(distance * np.float32(spacing_px / (slope_px * self._dx)), 1.0)
-        return np.minimum(np.log2(cells), self._tiling.level_count - 1).astype(np.uint8)
+        coarsest = self._tiling.level_count - 1
+        return np.asarray(np.minimum(np.log2(cells), coarsest), dtype=np.uint8)
 
     def _collect(
         self,

@@ -3,7 +3,7 @@ r"""From world error to screen error: at which distance a block may use a level.
 A vertical error e at distance d covers at most e k g / d pixels, where
 
     k = H / (2 tan(fov / 2))      pixels a unit of slope at the centre of a picture of H pixels
-    g = g(pitch)                  what the direction of view makes of a vertical displacement, off-axis stretch included
+    g = g(pitch)                  what the direction of view makes of a vertical displacement
 
 so level l of a block with error e_l may be used from the switch distance D_l = e_l k g / tau on.
 """
@@ -31,10 +31,11 @@ def pixels_per_slope(height_px: int, fov_y: float) -> float:
 
 
 def screen_error_factor(pitch: float, fov_y: float, aspect: float) -> float:
-    """Upper bound of the screen length of a vertical unit at unit distance, relative to the picture's centre.
+    """Upper bound of the screen length of a vertical unit, relative to one seen square-on.
 
-    With eye-space depth z >= d cos(theta), a displacement (0, cos p, sin p) moves a projected point by at most
-    sqrt((cos p + tan_y sin p)^2 + (tan_x sin p)^2) / z, where tan_x and tan_y are those of the picture's corner.
+    In eye space a vertical displacement is (0, cos p, sin p). It moves a projected point at depth z by at most
+    sqrt((cos p + tan_y sin p)^2 + (tan_x sin p)^2) / z, with tan_x and tan_y those of the picture's corner,
+    and z is at least the distance times the cosine of the corner's angle off axis.
 
     Args:
         pitch: angle of the view direction below the horizon [rad].
@@ -50,8 +51,8 @@ def screen_error_factor(pitch: float, fov_y: float, aspect: float) -> float:
 class SwitchTable:
     """Switch distances of all blocks and levels, for any threshold and picture.
 
-    Only the product of error and pixel scale matters, so the table keeps errors made monotone over the levels and
-    scales the distance instead: a new threshold costs nothing.
+    Only the product of error and pixel scale matters, so the table keeps errors, made monotone over the levels,
+    and scales the distance instead: a new threshold costs nothing.
     """
 
     def __init__(self, errors: Array) -> None:
@@ -68,7 +69,7 @@ class SwitchTable:
     @property
     def level_count(self) -> int:
         """Levels of detail."""
-        return self._level_count
+        return int(self._level_count)
 
     def update(self, errors: Array, blocks: tuple[int, int, int, int]) -> None:
         """Refresh a rectangle of blocks.

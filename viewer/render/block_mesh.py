@@ -15,7 +15,7 @@ __all__ = ["BlockIndices", "BlockInstances", "block_triangles"]
 
 
 def block_triangles(block_size: int, level: int) -> npt.NDArray[np.uint16]:
-    """Vertex indices (row-major in the block) of its triangles at a level, south-west to north-east diagonals."""
+    """Vertices (row-major in a block) of its triangles at a level, split from south-west to north-east."""
     step = 1 << level
     at = np.arange(0, block_size - 1, step)
     rows, cols = np.meshgrid(at, at, indexing="ij")
@@ -73,5 +73,6 @@ class BlockInstances:
 
     def release(self) -> None:
         """Give the memory back."""
-        for thing in (*self._arrays, *self._buffers):
-            thing.release()
+        for array, buffer in zip(self._arrays, self._buffers, strict=True):
+            array.release()
+            buffer.release()

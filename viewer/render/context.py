@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import moderngl
 
 from viewer.errors import ContextError
@@ -19,7 +21,7 @@ def create_headless_context() -> moderngl.Context:
         ContextError: naming the missing packages, or the version found if it is below 4.1.
     """
     try:
-        ctx = moderngl.create_context(standalone=True, backend="egl", require=REQUIRED_VERSION)
+        ctx = _create(REQUIRED_VERSION)
     except Exception as error:  # glcontext raises plain Exception, whatever went wrong
         raise ContextError(_explain(error)) from error
     return check_context(ctx)
@@ -38,6 +40,11 @@ def check_context(ctx: moderngl.Context) -> moderngl.Context:
     return ctx
 
 
+def _create(version: int) -> moderngl.Context:
+    settings: dict[str, Any] = {"standalone": True, "backend": "egl", "require": version}
+    return moderngl.create_context(**settings)
+
+
 def _explain(error: Exception) -> str:
     text = str(error).strip() or type(error).__name__
     if "libEGL" in text or "libGL" in text or "not loaded" in text or "not found" in text:
@@ -51,7 +58,7 @@ def _explain(error: Exception) -> str:
 def _version_without_requirement() -> str | None:
     """The version that the driver gives when asked for none, or None if it gives nothing at all."""
     try:
-        ctx = moderngl.create_context(standalone=True, backend="egl", require=330)
+        ctx = _create(330)
     except Exception:  # the first error is the one worth telling
         return None
     found = f"{ctx.version_code // 100}.{ctx.version_code % 100 // 10}"

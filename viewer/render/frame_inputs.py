@@ -56,7 +56,8 @@ class WaterFrame:
     None lets the renderer classify the depth itself."""
     z_b: npt.NDArray[np.float32] | None = None
     """The bed under this water [m, datum-relative]: base plus the edits of its run, not the preview.
-    None means the heightfield as it was when the renderer was made. Hand over the same object for the same bed."""
+    None means the heightfield as it was when the renderer was made. Hand over the same object for the same
+    bed."""
 
 
 @dataclass(frozen=True)

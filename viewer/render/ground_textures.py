@@ -44,7 +44,8 @@ class GroundTextures:
         Args:
             ctx: the OpenGL context.
             heightfield: the ground.
-            imagery: optional picture of the ground, shape [rows, cols, 3], row 0 in the south, covering the grid.
+            imagery: optional picture of the ground, shape [rows, cols, 3], row 0 in the south, covering the
+                grid.
 
         Raises:
             TerrainDataError: if the imagery is not 8-bit RGB.

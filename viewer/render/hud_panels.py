@@ -128,7 +128,6 @@ def scale_panel(metres_per_pixel: float, bearing_deg: float, scale: float) -> Im
 
     draw.polygon([at(0.0, r), at(2.6, r * 0.75), at(math.pi, r * 0.35)], fill=(235, 90, 70, 255))
     draw.polygon([at(0.0, r), at(-2.6, r * 0.75), at(math.pi, r * 0.35)], fill=(255, 190, 175, 255))
-    x, y = at(0.0, r + 1 * scale)
     draw.text((centre_x - 34 * scale, centre_y), "N", font=_font(round(15 * scale)), fill=_INK, anchor="lm")
     return image
 

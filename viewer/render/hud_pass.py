@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from functools import partial
 
 import moderngl
 import numpy as np
@@ -58,7 +59,7 @@ class HudPass:
         for name, text, alert in banners:
             if text:
                 texture = self._panel(
-                    name, (text, scale), lambda t=text, a=alert: hud_panels.banner_panel(t, scale, a)
+                    name, (text, scale), partial(hud_panels.banner_panel, text, scale, alert)
                 )
                 self._blit(texture, size, (size[0] - texture.width) // 2, top)
                 top += texture.height + edge // 2

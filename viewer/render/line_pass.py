@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import moderngl
 import numpy as np
 import numpy.typing as npt
@@ -34,7 +36,7 @@ def drape(heightfield: Heightfield, vertices: tuple[tuple[float, float], ...]) -
     """
     places = np.asarray(vertices, dtype=np.float64)
     parts = [places[:1]]
-    for start, end in zip(places[:-1], places[1:], strict=True):
+    for start, end in pairwise(places):
         pieces = max(1, int(np.ceil(np.hypot(*(end - start)) / (0.5 * heightfield.grid.dx))))
         share = np.arange(1, pieces + 1)[:, None] / pieces
         parts.append(start + share * (end - start))

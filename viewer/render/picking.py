@@ -27,7 +27,13 @@ class Unprojection:
     def world(
         self, column: npt.ArrayLike, row: npt.ArrayLike, depth: npt.ArrayLike
     ) -> npt.NDArray[np.float64]:
-        """World points [m], shape [..., 3], of pixel centres counted from the lower left and their depths (0 to 1)."""
+        """World points [m], shape [..., 3], of pixel centres and their depths.
+
+        Args:
+            column: counted from the left.
+            row: counted from the bottom.
+            depth: 0 at the near plane, 1 at the far plane.
+        """
         x = 2.0 * (np.asarray(column, dtype=np.float64) + 0.5) / self.size[0] - 1.0
         y = 2.0 * (np.asarray(row, dtype=np.float64) + 0.5) / self.size[1] - 1.0
         z = 2.0 * np.asarray(depth, dtype=np.float64) - 1.0

@@ -1,4 +1,7 @@
-"""The renderer: a context, a target, a size and `FrameInputs` in, a picture out. It knows no window toolkit."""
+"""The renderer.
+
+A context, a target, a size and `FrameInputs` in, a picture out. It knows no window toolkit.
+"""
 
 from __future__ import annotations
 
@@ -39,8 +42,8 @@ _SKIRT_SHARE = 0.012
 class Renderer:
     """Draws one terrain and its flood.
 
-    Use it with the OpenGL context current, always from the same thread. Change the ground by `heightfield.set`;
-    the renderer notices.
+    Use it with the OpenGL context current, always from the same thread. Change the ground by
+    `heightfield.set`; the renderer notices.
     """
 
     def __init__(
@@ -55,7 +58,8 @@ class Renderer:
         Args:
             ctx: an OpenGL 4.1 core context.
             heightfield: the ground; watched for changes.
-            imagery: optional picture of the ground, [rows, cols, 3] uint8, row 0 in the south, covering the grid.
+            imagery: optional picture of the ground, [rows, cols, 3] uint8, row 0 in the south, covering the
+                grid.
             block_size: vertices along a block's side: 17, 33 or 65.
 
         Raises:
@@ -118,7 +122,9 @@ class Renderer:
         near, far = self._clip_planes(inputs.camera, frame, size, selection)
         view = inputs.camera.view_matrix()
         projection = inputs.camera.projection(size[0] / size[1], near, far)
-        self._unprojection = Unprojection(np.linalg.inv(projection @ view), size, frame)
+        self._unprojection = Unprojection(
+            np.asarray(np.linalg.inv(projection @ view), dtype=np.float64), size, frame
+        )
         self._uniforms.write(inputs, frame, projection @ view, size, self._skirt_foot)
         draws = self._draw_scene(scene, inputs, selection, slots, projection, view)
         scene.resolve()
@@ -161,7 +167,10 @@ class Renderer:
         return None if depth >= 1.0 else self._unprojection.place(column, row, depth)
 
     def read_depth(self) -> tuple[npt.NDArray[np.float32], Unprojection]:
-        """Depths of the last picture (0 to 1, shape [height, width], lowest row first) and the way back from them.
+        """Depths of the last picture and the way back from them to the world.
+
+        Returns:
+            depths (0 to 1), shape [height, width], lowest row first; and the unprojection.
 
         Raises:
             RuntimeError: before the first picture.
@@ -203,7 +212,7 @@ class Renderer:
         if options.show_sky:
             rotation = view.copy()
             rotation[:3, 3] = 0.0
-            draws += self._sky.draw(np.linalg.inv(projection @ rotation))
+            draws += self._sky.draw(np.asarray(np.linalg.inv(projection @ rotation), dtype=np.float64))
         if options.show_terrain:
             draws += self._terrain.draw(self._ground, selection.terrain, options)
         if options.show_skirt:

@@ -41,16 +41,18 @@ def build_program(ctx: moderngl.Context, vertex: str, fragment: str) -> moderngl
         program = ctx.program(vertex_shader=read_shader(vertex), fragment_shader=read_shader(fragment))
     except moderngl.Error as error:
         raise ShaderError(f"{vertex} with {fragment} does not compile: {error}") from error
-    if "Frame" in program:
-        program["Frame"].binding = 0
+    block = program.get("Frame", None)
+    if isinstance(block, moderngl.UniformBlock):
+        block.binding = 0
     return program
 
 
 def set_uniforms(program: moderngl.Program, **values: object) -> None:
     """Set the uniforms that the compiler kept; those it dropped as unused are passed over."""
     for name, value in values.items():
-        if name in program:
-            program[name].value = value
+        uniform = program.get(name, None)
+        if isinstance(uniform, moderngl.Uniform):
+            uniform.value = value
 
 
 def _lines(name: str, including: list[str]) -> list[str]:

@@ -1,4 +1,7 @@
-"""A sky made of numbers: a cube map with sun, haze and clouds, drawn behind everything and mirrored in the water."""
+"""A sky made of numbers.
+
+A cube map with sun, haze and clouds, drawn behind everything and mirrored in the water.
+"""
 
 from __future__ import annotations
 
@@ -102,7 +105,7 @@ class SkyPass:
         """
         self._ctx.enable_only(moderngl.NOTHING)
         self.texture.use(0)
-        self._program["direction_of_place"].write(direction_of_place.T.astype("<f4").tobytes())
+        set_uniforms(self._program, direction_of_place=tuple(direction_of_place.T.ravel().tolist()))
         self._array.render(moderngl.TRIANGLES, vertices=3)
         return 1
 

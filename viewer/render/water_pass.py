@@ -1,4 +1,7 @@
-"""Draws the flood: the surface over partial and wet blocks, with what it mirrors and what is seen through it."""
+"""Draws the flood.
+
+The surface over partial and wet blocks, with what it mirrors and what is seen through it.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +21,11 @@ from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, DEPTH_CLASS_LIMITS
 
 __all__ = ["WaterPass", "ripple_slopes"]
 
+_UNITS = (
+    *("height", "ground_colour", "edit_mask", "sky", "ripples"),
+    *("bed_first", "bed_second", "depth_first", "depth_second", "slope_first", "slope_second"),
+)
+"""Samplers in the order of their texture units."""
 _RIPPLE_SIDE = 256
 _SEED = 2011
 
@@ -46,9 +54,7 @@ class WaterPass:
         """Compile and allocate."""
         self._ctx = ctx
         self._program = build_program(ctx, "water.vert", "water.frag")
-        names = ("height", "ground_colour", "edit_mask", "sky", "ripples", "bed_first", "bed_second")
-        names += ("depth_first", "depth_second", "slope_first", "slope_second")
-        set_uniforms(self._program, **{name: unit for unit, name in enumerate(names)})
+        set_uniforms(self._program, **{name: unit for unit, name in enumerate(_UNITS)})
         set_uniforms(
             self._program,
             class_limits=list(DEPTH_CLASS_LIMITS),

@@ -1,7 +1,7 @@
 """The orbit camera: a pose around a target point, its matrices and rays.
 
-A camera is a value: moving it makes another one. World axes as in `coordinates`; matrices act on column vectors;
-clip space is OpenGL's (z from -1 to 1).
+A camera is a value: moving it makes another one. World axes as in `coordinates`; matrices act on
+column vectors; clip space is OpenGL's (z from -1 to 1).
 """
 
 from __future__ import annotations

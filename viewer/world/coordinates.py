@@ -25,7 +25,10 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class WorldFrame:
-    """The map between grid coordinates (CRS x, y [m], elevation z relative to the case datum [m]) and the world."""
+    """The map between grid coordinates and the world.
+
+    Grid coordinates are x and y of the CRS [m] and the elevation z relative to the case datum [m].
+    """
 
     x_centre: float
     """Easting of the grid's centre [m]."""

@@ -1,11 +1,15 @@
 """Depth classes for emergency decisions, and their colours.
 
 The limits follow what people and vehicles can stand: 0.15 m stops walking children, 0.3 m floats small cars,
-0.5 m stops most cars, 0.76 m (30 inches) stops emergency trucks, 1 m and 2 m threaten adults and ground floors.
-The colours run light to dark in one direction of lightness, so they stay apart for every kind of colour vision.
+0.5 m stops most cars, 0.76 m (30 inches) stops emergency trucks, 1 m and 2 m threaten adults and
+ground floors.
+The colours run light to dark in one direction of lightness, so they stay apart for every kind of
+colour vision.
 """
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -35,5 +39,5 @@ def depth_class(h: npt.ArrayLike) -> npt.NDArray[np.intp]:
 def depth_class_labels() -> tuple[str, ...]:
     """Text of each class for a legend [m]."""
     limits = [f"{limit:g}" for limit in DEPTH_CLASS_LIMITS]
-    between = [f"{low} - {high}" for low, high in zip(limits[:-1], limits[1:], strict=True)]
+    between = [f"{low} - {high}" for low, high in pairwise(limits)]
     return (f"< {limits[0]}", *between, f"> {limits[-1]}")

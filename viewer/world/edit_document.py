@@ -27,7 +27,10 @@ class EditPreview:
     sign: npt.NDArray[np.int8]
     """+1 where the ground is raised, -1 where it is lowered, 0 elsewhere, shape [nrows, ncols]."""
     dirty: Rect | None
-    """What changed since the preview before: first row, first column, end row, end column; None for nothing."""
+    """What changed since the preview before: first row, first column, end row, end column.
+
+    None for nothing.
+    """
     revision: int
     """Counts the previews; equal numbers mean equal ground."""
 
@@ -118,5 +121,5 @@ class EditDocument:
 
 
 def _rect(dirty: Rect | None) -> Rect | None:
-    """A rectangle of the protocol (rows, then columns) as the viewer has it (first corner, then end corner)."""
+    """A rectangle of the protocol (rows, then columns) in the viewer's order (first corner, end corner)."""
     return None if dirty is None else (dirty[0], dirty[2], dirty[1], dirty[3])

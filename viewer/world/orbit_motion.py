@@ -168,7 +168,8 @@ class OrbitMotion:
         Args:
             camera: the camera now.
             wall_dt: wall time since the last picture [s].
-            ground: height of the ground in the world; if given, the target glides along it and the eye stays above.
+            ground: height of the ground in the world; if given, the target glides along it and the eye
+                stays above.
             clearance: least height of the eye above the ground [m].
         """
         if self._flight is not None:
@@ -198,10 +199,10 @@ class OrbitMotion:
         return moved
 
     def _follow_drag(self, moved: dict[str, float], wall_dt: float) -> None:
-        """While the button is down the camera goes where the mouse went, and its mean velocity is remembered."""
+        """While the button is down the camera goes where the mouse went; the mean velocity is kept."""
         fade = math.exp(-wall_dt / _DRAG_SAMPLE_S)
         for axis in _AXES:
-            if axis in {"zoom"}:
+            if axis == "zoom":
                 continue
             moved[axis] = self._pending[axis]
             measured = self._pending[axis] / wall_dt if wall_dt > 0.0 else 0.0
