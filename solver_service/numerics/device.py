@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import os
 import sys
 import time
@@ -12,9 +13,20 @@ from pathlib import Path
 import warp as wp
 
 from solver_service.errors import DeviceError
-from solver_service.numerics.warp_modules import STEP_MODULE, SUPPORT_MODULE
+from solver_service.numerics.warp_modules import ROWS_MODULE, STEP_MODULE, SUPPORT_MODULE
 
 LOCK_POLL_S = 0.2
+
+KERNEL_FILES = (
+    "clock_kernels",
+    "forcing_kernels",
+    "gauge_kernels",
+    "ghost_kernels",
+    "row_kernels",
+    "step_kernels",
+    "tile_kernels",
+    "wet_block_kernels",
+)
 
 
 def device_names() -> list[str]:
@@ -64,6 +76,12 @@ def _compiler_lock() -> Iterator[None]:
         yield
 
 
+def _import_kernels() -> None:
+    """Let every kernel file register its kernels."""
+    for name in KERNEL_FILES:
+        importlib.import_module(f"solver_service.numerics.{name}")
+
+
 def warm_kernels(device: str = "auto", *, with_oracle: bool = False) -> float:
     """Compile and load the kernels that a run on the device uses; returns the seconds it took.
 
@@ -74,12 +92,10 @@ def warm_kernels(device: str = "auto", *, with_oracle: bool = False) -> float:
     Raises:
         DeviceError: when the device is not there or its kernels do not compile.
     """
-    from solver_service.numerics import step_kernels, wet_block_kernels
-
-    assert step_kernels and wet_block_kernels
+    _import_kernels()
     name = pick_device(device)
     began = time.perf_counter()
-    modules = [SUPPORT_MODULE] if name == "cpu" else [SUPPORT_MODULE, STEP_MODULE]
+    modules = [SUPPORT_MODULE, ROWS_MODULE] if name == "cpu" else [SUPPORT_MODULE, STEP_MODULE]
     if name == "cpu" and with_oracle:
         modules.append(STEP_MODULE)
     with _compiler_lock():

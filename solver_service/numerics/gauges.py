@@ -93,14 +93,9 @@ class GaugeRecorder:
             advance_gauge_cursor, dim=1, inputs=[clock, self.interval], outputs=[self._cursor], device=device
         )
 
-    def is_due(self, time: float, recorded: int) -> bool:
-        """Whether record number `recorded` stands at or before `time`."""
-        return self.count > 0 and recorded * self.interval <= time
-
-    @property
-    def cursor(self) -> int:
-        """Number of the next record."""
-        return int(self._cursor.numpy()[0]) if self.count else 0
+    def is_due(self, time: float) -> bool:
+        """Whether the next record stands at or before `time` [s]; for devices whose memory the host sees."""
+        return self.count > 0 and int(self._cursor.numpy()[0]) * self.interval <= time
 
     def drain(self) -> None:
         """Fetch the new records from the device; at least once in `DRAIN_STEPS` steps."""

@@ -1,0 +1,71 @@
+"""The active tiles of a grid as rectangles of cells for the row loops.
+
+Tiles that lie side by side in a row of tiles make one rectangle, split where it is wider than the cache likes; equal
+rectangles of consecutive tile rows are stacked, but not higher than a thread's fair share, so that the threads can be
+dealt equal work.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from solver_service.numerics.fields import TILE
+
+
+def _spans(row: npt.NDArray[np.bool_], ncols: int, widest: int) -> list[tuple[int, int]]:
+    """Column ranges [first, last) of the runs of active tiles in a row of tiles."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], row.astype(np.int8), [0]])))
+    spans = []
+    for begin, end in edges.reshape(-1, 2):
+        first, last = int(begin) * TILE, min(int(end) * TILE, ncols)
+        pieces = -(-(last - first) // widest)
+        width = -(-(last - first) // (pieces * TILE)) * TILE
+        spans += [(col, min(col + width, last)) for col in range(first, last, width)]
+    return spans
+
+
+def cut_chunks(
+    mask: npt.NDArray[np.bool_], nrows: int, ncols: int, threads: int, widest: int
+) -> npt.NDArray[np.int32]:
+    """Rectangles that cover exactly the active tiles.
+
+    Args:
+        mask: active tiles, [tile rows, tile columns].
+        nrows: grid rows.
+        ncols: grid columns.
+        threads: threads that share the work.
+        widest: most columns of a rectangle, a multiple of the tile side.
+
+    Returns:
+        First row, one past the last row, first column, one past the last column; [chunks, 4].
+    """
+    highest = max(1, -(-mask.shape[0] // (4 * threads)))
+    chunks: list[list[int]] = []
+    growing: dict[tuple[int, int], list[int]] = {}
+    for tile_row, row in enumerate(mask):
+        row0, row1 = tile_row * TILE, min((tile_row + 1) * TILE, nrows)
+        now: dict[tuple[int, int], list[int]] = {}
+        for span in _spans(row, ncols, widest):
+            chunk = growing.get(span)
+            if chunk is None or row0 - chunk[0] >= highest * TILE:
+                chunk = [row0, row1, *span]
+                chunks.append(chunk)
+            chunk[1] = row1
+            now[span] = chunk
+        growing = now
+    return np.array(sorted(chunks), np.int32).reshape(-1, 4)
+
+
+def deal_chunks(chunks: npt.NDArray[np.int32], threads: int) -> list[tuple[int, int]]:
+    """Consecutive ranges of chunks [first, last) with about equal numbers of cells, none empty."""
+    cells = (chunks[:, 1] - chunks[:, 0]) * (chunks[:, 3] - chunks[:, 2])
+    reached = np.cumsum(cells)
+    if reached.size == 0:
+        return []
+    bounds = [
+        0,
+        *np.searchsorted(reached, reached[-1] * np.arange(1, threads) / threads).tolist(),
+        len(chunks),
+    ]
+    return [(first, last) for first, last in zip(bounds, bounds[1:], strict=False) if last > first]
