@@ -1,0 +1,185 @@
+"""The viewer's dealings with the service: what is asked of it, and who hears what it says."""
+
+from __future__ import annotations
+
+import time
+from typing import Protocol
+
+import protocol
+from viewer.app.run_book import RunBook
+from viewer.app.service_link import Refusal, Reply, ServiceLink
+from viewer.net import ConnectionThread
+
+__all__ = ["ServiceDesk", "ServiceListener"]
+
+CREDIT = 8
+"""Frames that may be on their way at a time."""
+
+
+class ServiceListener(Protocol):
+    """Who is told what the service says."""
+
+    def connection_opened(self) -> None:
+        """A connection stands, the first one or one after a loss."""
+
+    def run_changed(self, info: protocol.RunInfo) -> None:
+        """A run is new or has changed."""
+
+    def edits_changed(self, message: protocol.EditsChanged) -> None:
+        """The working list of a run has changed."""
+
+    def terrain_came(self, message: protocol.TerrainReceived) -> None:
+        """The base bed of a run is here."""
+
+    def say(self, sentence: str) -> None:
+        """Show a sentence to the user."""
+
+
+class ServiceDesk:
+    """Sends requests, sorts what comes in, keeps the book of runs.
+
+    Args:
+        connection: the connection to the service.
+        listener: who is told.
+    """
+
+    def __init__(self, connection: ConnectionThread, listener: ServiceListener) -> None:
+        self.connection = connection
+        self.book = RunBook()
+        self.devices: tuple[str, ...] = ()
+        self._listener = listener
+        self._link = ServiceLink(connection, listener.say)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether commands can leave."""
+        return self.connection.state.phase == "open"
+
+    def connection_sentence(self) -> str:
+        """Return what the connection does, with the countdown to the next attempt."""
+        return self.connection.state.sentence(time.monotonic())
+
+    def drain(self) -> list[protocol.Frame]:
+        """Act on every waiting control message; return the frames that came, and let as many more come."""
+        for message in self.connection.mailbox.take_control():
+            self._handle(message)
+        frames = self.connection.mailbox.take_frames()
+        if frames:
+            self._link.grant(len(frames))
+        return frames
+
+    def start_run(
+        self,
+        case: str,
+        duration: float | None,
+        interval: float | None,
+        device: str,
+        done: Reply,
+        refused: Refusal,
+    ) -> None:
+        """Ask for a new run."""
+        self._link.send(
+            lambda number: protocol.StartRun(
+                number, case=case, duration=duration, output_interval=interval, device=device
+            ),
+            f"start {case}",
+            done,
+            refused,
+        )
+
+    def pause_run(self, run: str) -> None:
+        """Ask to hold a run."""
+        self._link.send(lambda number: protocol.PauseRun(number, run=run), "pause the run")
+
+    def resume_run(self, run: str) -> None:
+        """Ask to go on with a run."""
+        self._link.send(lambda number: protocol.ResumeRun(number, run=run), "resume the run")
+
+    def stop_run(self, run: str) -> None:
+        """Ask to end a run."""
+        self._link.send(lambda number: protocol.StopRun(number, run=run), "stop the run")
+
+    def fetch_terrain(self, run: str) -> None:
+        """Ask for the base bed of a run."""
+        self._link.send(lambda number: protocol.GetTerrain(number, run=run), "fetch the terrain")
+
+    def subscribe(self, run: str, from_index: int, mode: protocol.SubscriptionMode) -> None:
+        """Ask for the frames of a run from an index on."""
+        self._link.send(
+            lambda number: protocol.Subscribe(
+                number, run=run, from_index=from_index, mode=mode, credit=CREDIT
+            ),
+            "subscribe to the run",
+        )
+
+    def seek(self, run: str, index: int) -> None:
+        """Ask the stream to go on from another frame."""
+        self._link.send(lambda number: protocol.Seek(number, run=run, index=index), "fetch a frame")
+
+    def append_edit(self, run: str, edit: protocol.Edit, refused: Refusal) -> None:
+        """Ask to take an edit into the working list."""
+        self._link.send(
+            lambda number: protocol.AppendEdit(number, run=run, edit=edit), "add the edit", refused=refused
+        )
+
+    def undo_edit(self, run: str) -> None:
+        """Ask to take the newest edit back."""
+        self._link.send(lambda number: protocol.UndoEdit(number, run=run), "undo")
+
+    def redo_edit(self, run: str) -> None:
+        """Ask to bring an edit back."""
+        self._link.send(lambda number: protocol.RedoEdit(number, run=run), "redo")
+
+    def recalculate(self, run: str, index: int, revision: int, done: Reply, refused: Refusal) -> None:
+        """Ask for a branch at a frame with the working list of edits."""
+        self._link.send(
+            lambda number: protocol.Recalculate(number, run=run, index=index, revision=revision),
+            "recalculate",
+            done,
+            refused,
+        )
+
+    def close(self) -> None:
+        """End the connection."""
+        self.connection.close()
+
+    def _handle(self, message: protocol.ClientEvent) -> None:
+        match message:
+            case protocol.Welcome():
+                self._link.forget()
+                self.devices = tuple(message.devices)
+                self._link.send(lambda number: protocol.ListCases(number), "list the cases")
+                self._link.send(lambda number: protocol.ListRuns(number), "list the runs")
+                self._listener.connection_opened()
+            case protocol.Ack():
+                self._link.handle_ack(message)
+            case protocol.Error():
+                self._link.handle_error(message)
+            case protocol.CaseList():
+                self._link.handle_listing(message.id)
+                self.book.cases = tuple(message.cases)
+            case protocol.RunList():
+                self._link.handle_listing(message.id)
+                for info in reversed(message.runs):
+                    self._note_run(info)
+            case protocol.RunChanged():
+                self._note_run(message.run)
+            case protocol.RunBranched():
+                self._note_run(message.child)
+                self._listener.say("somebody recalculated this run; the branch is in the list of runs")
+            case protocol.EditsChanged():
+                self.book.note_edits(message)
+                self._listener.edits_changed(message)
+            case protocol.TerrainReceived():
+                self._listener.terrain_came(message)
+            case protocol.Progress():
+                self.book.progress[message.run] = message
+            case protocol.Notice():
+                self._listener.say(message.text)
+
+    def _note_run(self, info: protocol.RunInfo) -> None:
+        before = self.book.runs.get(info.run)
+        self.book.note_run(info)
+        if info.status == "failed" and info.message and (before is None or before.status != "failed"):
+            self._listener.say(f"the run failed: {info.message}")
+        self._listener.run_changed(info)

@@ -1,0 +1,146 @@
+"""The run on the picture: its ground, its edits, and which of its frames are at hand.
+
+Frames belong to the run that computed them. A branch shares its past with its ancestors, so a frame index is
+looked up in the lineage: the youngest run whose frames begin at or before it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable
+
+import numpy as np
+import numpy.typing as npt
+
+import protocol
+from viewer.net import FrameKey, FrameLoader
+from viewer.world import EditDocument, Heightfield, Rect, WaterTimeline
+
+__all__ = ["ShownRun"]
+
+_SERIAL = itertools.count(1)
+
+
+class ShownRun:
+    """A run whose terrain is known.
+
+    Args:
+        info: the run.
+        z_b_base: its bed before any edit [m, datum-relative], shape [nrows, ncols].
+        loader: where its frames lie.
+        heightfield: ground of another run on the same terrain to go on with; None makes one of the base bed.
+
+    Attributes:
+        info: the run as the service described it last.
+        heightfield: the ground as drawn: base, working list and the line being drawn.
+        document: the working list of edits.
+        timeline: frames at hand, ancestors' included.
+    """
+
+    def __init__(
+        self,
+        info: protocol.RunInfo,
+        z_b_base: npt.NDArray[np.float32],
+        loader: FrameLoader,
+        heightfield: Heightfield | None = None,
+    ) -> None:
+        self.info = info
+        self.grid = info.grid.geometry
+        self._serial = next(_SERIAL)
+        self._drawn_revision = 0 if heightfield is None else -1
+        self.heightfield = Heightfield(self.grid, z_b_base) if heightfield is None else heightfield
+        self.document = EditDocument(self.grid, z_b_base)
+        self.timeline = WaterTimeline(info.output_interval)
+        self._loader = loader
+        for entry in self.lineage:
+            loader.add_run(entry.run, self.grid.nrows, self.grid.ncols)
+        self.collect_frames()
+
+    @property
+    def run(self) -> str:
+        """Its id."""
+        return self.info.run
+
+    @property
+    def lineage(self) -> tuple[protocol.LineageEntry, ...]:
+        """The runs that hold its frames, oldest first, itself last."""
+        return self.info.lineage or (protocol.LineageEntry(self.info.run, 0),)
+
+    @property
+    def root(self) -> str:
+        """Id of the run its lineage begins with; all of one root share their base bed."""
+        return self.lineage[0].run
+
+    @property
+    def branch_index(self) -> int:
+        """Frame index its own frames begin at; 0 for a run of its own."""
+        return self.lineage[-1].first_index
+
+    @property
+    def computed_until(self) -> float:
+        """Time of the newest computed frame [s]."""
+        newest = max(self.info.frame_count - 1, self.branch_index, 0)
+        return max(newest * self.info.output_interval, self.timeline.last_time)
+
+    def frame_key(self, index: int) -> FrameKey:
+        """Return which run holds frame `index`."""
+        holder = self.lineage[0].run
+        for entry in self.lineage:
+            if entry.first_index <= index:
+                holder = entry.run
+        return (holder, index)
+
+    def note_frame(self, key: FrameKey) -> bool:
+        """Note that a frame has come; return whether it is one of this run's."""
+        is_ours = self.frame_key(key[1]) == key
+        if is_ours:
+            self.timeline.add(key[1])
+        return is_ours
+
+    def discard_frames(self, run: str, indices: Iterable[int]) -> None:
+        """Note that frames of `run` are no longer at hand."""
+        for index in indices:
+            if self.frame_key(index) == (run, index):
+                self.timeline.discard(index)
+
+    def collect_frames(self) -> None:
+        """Note every frame of the lineage that is at hand already."""
+        for entry in self.lineage:
+            for index in self._loader.indices(entry.run):
+                self.note_frame((entry.run, index))
+
+    def next_missing(self, start: int = 0) -> int:
+        """Return the first index from `start` on that is not at hand."""
+        index = start
+        while index in self.timeline:
+            index += 1
+        return index
+
+    def refresh_ground(self) -> bool:
+        """Bring the heightfield up to date with the edits; return whether anything changed.
+
+        Raises:
+            protocol.EditError: the line being drawn does not fit the terrain.
+        """
+        preview = self.document.preview()
+        if preview.revision == self._drawn_revision:
+            return False
+        is_foreign, self._drawn_revision = self._drawn_revision < 0, preview.revision
+        dirty = _difference(self.heightfield.z_b, preview.z_b) if is_foreign else preview.dirty
+        if dirty is None:
+            return False
+        self.heightfield.set(preview.z_b, dirty)
+        return True
+
+    def overlay_revision(self) -> int:
+        """Return a number that changes with the edit marks, within this run and from run to run."""
+        return self._serial * 1_000_000 + self.document.preview().revision
+
+
+def _difference(before: npt.NDArray[np.float32], after: npt.NDArray[np.float32]) -> Rect | None:
+    """Return the smallest rectangle that holds every cell in which two beds differ, None for equal ones."""
+    differs = before != after
+    rows, cols = np.flatnonzero(differs.any(axis=1)), np.flatnonzero(differs.any(axis=0))
+    if rows.size == 0:
+        return None
+    return int(rows[0]), int(cols[0]), int(rows[-1]) + 1, int(cols[-1]) + 1

@@ -1,0 +1,135 @@
+"""The renderer and what it draws now, the same in the window and off screen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from viewer.render import FrameInputs, FrameStats, Renderer, check_context
+from viewer.world import Heightfield
+
+__all__ = ["Scene", "Stage", "save_png"]
+
+EMPTY_COLOUR = (0.086, 0.102, 0.118, 1.0)
+
+
+class Scene(Protocol):
+    """What there is to draw; `viewer.app.ViewerApp` is one."""
+
+    @property
+    def heightfield(self) -> Heightfield | None:
+        """The ground, None before the terrain has come."""
+
+    def frame_inputs(self) -> FrameInputs | None:
+        """Return all the picture depends on, None when there is nothing to draw yet."""
+
+    def note_painted(self, size: tuple[int, int]) -> None:
+        """The inputs given last are on the picture now, of width and height `size` [pixels]."""
+
+    def take_picture_path(self) -> str | None:
+        """Return where the next picture is to be written, once."""
+
+    def complain(self, sentence: str) -> None:
+        """Show a sentence to the user."""
+
+
+def save_png(path: Path, pixels: npt.NDArray[np.uint8]) -> None:
+    """Write an RGB picture, rows from the top, as PNG; a half-written file never bears the name."""
+    part = path.with_name(path.name + ".part")
+    Image.fromarray(pixels).save(part, format="PNG")
+    part.replace(path)
+
+
+class Stage:
+    """Draws a scene with a renderer that is made anew when the terrain is another one.
+
+    Args:
+        scene: what there is to draw.
+        make_context: gives the OpenGL context; called once by `open`.
+
+    Attributes:
+        stats: what the last picture cost, None before the first.
+        pictures: number of pictures drawn with a terrain.
+    """
+
+    def __init__(
+        self, scene: Scene, make_context: Callable[[], moderngl.Context] = moderngl.create_context
+    ) -> None:
+        self._scene = scene
+        self._make_context = make_context
+        self._context: moderngl.Context | None = None
+        self._renderer: Renderer | None = None
+        self._heightfield: Heightfield | None = None
+        self.stats: FrameStats | None = None
+        self.pictures = 0
+
+    @property
+    def context(self) -> moderngl.Context:
+        """The OpenGL context; `open` must have been called."""
+        assert self._context is not None, "the stage is not open"
+        return self._context
+
+    def open(self) -> None:
+        """Take the OpenGL context.
+
+        Raises:
+            ContextError: it is older than 4.1.
+        """
+        self._context = check_context(self._make_context())
+
+    def paint(self, framebuffer: int, width: int, height: int) -> None:
+        """Draw the scene into framebuffer object number `framebuffer`."""
+        self.paint_to(self.context.detect_framebuffer(framebuffer), (width, height))
+
+    def paint_to(self, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
+        """Draw the scene into `target` of width and height `size` [pixels]."""
+        inputs = self._scene.frame_inputs()
+        heightfield = self._scene.heightfield
+        if inputs is None or heightfield is None:
+            target.use()
+            target.viewport = (0, 0, *size)
+            target.clear(*EMPTY_COLOUR)
+            return
+        if self._renderer is None or heightfield is not self._heightfield:
+            if self._renderer is not None:
+                self._renderer.release()
+            self._renderer = Renderer(self.context, heightfield)
+            self._heightfield = heightfield
+        self.stats = self._renderer.draw(target, size, inputs)
+        self.pictures += 1
+        self._scene.note_painted(size)
+        path = self._scene.take_picture_path()
+        if path is not None:
+            self._save(Path(path), target, size)
+
+    def ground_at(self, x: float, y: float) -> tuple[float, float] | None:
+        """Return the map point (x, y) [m] seen at a pixel of the last picture, None for the sky."""
+        point = None if self._renderer is None else self._renderer.pick(x, y)
+        return None if point is None else (point[0], point[1])
+
+    def pixels(self, target: moderngl.Framebuffer, size: tuple[int, int]) -> npt.NDArray[np.uint8]:
+        """Return the colours of `target`, shape [height, width, 3], first row on top."""
+        raw = target.read(viewport=(0, 0, *size), components=3, alignment=1)
+        return np.frombuffer(raw, dtype=np.uint8).reshape(size[1], size[0], 3)[::-1].copy()
+
+    def close(self) -> None:
+        """Release the renderer; the context belongs to whoever made it."""
+        if self._renderer is not None:
+            self._renderer.release()
+        self._renderer = None
+        self._heightfield = None
+        self._context = None
+
+    def _save(self, path: Path, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
+        try:
+            save_png(path, self.pixels(target, size))
+        except OSError as error:
+            self._scene.complain(f"the picture {path} could not be written: {error}")
+        else:
+            self._scene.complain(f"picture written to {path}")

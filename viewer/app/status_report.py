@@ -1,0 +1,74 @@
+"""The viewer's state as the panels and scripts read it."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from viewer.app.edit_drawing import EditDrawing
+from viewer.app.picture_text import edit_rows, readout
+from viewer.app.recalculation import Recalculation
+from viewer.app.service_desk import ServiceDesk
+from viewer.app.shown_run import ShownRun
+from viewer.app.water_feed import WaterFeed
+from viewer.view_status import PointReadout, ViewStatus
+from viewer.world import PlaybackClock, probe
+
+__all__ = ["point_readout", "program_status", "run_status"]
+
+
+def program_status(desk: ServiceDesk, clock: PlaybackClock, drawing: EditDrawing, message: str) -> ViewStatus:
+    """Return the part of the status that needs no run."""
+    return ViewStatus(
+        connection=desk.connection_sentence(),
+        is_connected=desk.is_open,
+        message=message,
+        devices=desk.devices,
+        cases=desk.book.case_rows(),
+        runs=desk.book.run_rows(),
+        is_playing=clock.is_playing,
+        follows_live=clock.follows_live,
+        playback_speed=clock.speed,
+        time=clock.time,
+        is_drawing=drawing.is_on,
+        drawn_vertices=len(drawing.vertices),
+        edit_settings=drawing.settings,
+    )
+
+
+def run_status(
+    status: ViewStatus, shown: ShownRun, desk: ServiceDesk, recalculated: Recalculation | None
+) -> ViewStatus:
+    """Return `status` with what is known of the shown run."""
+    info, document = shown.info, shown.document
+    progress = desk.book.progress.get(shown.run)
+    is_waiting = recalculated is not None and recalculated.is_waiting
+    return dataclasses.replace(
+        status,
+        shown_run=shown.run,
+        title=info.title,
+        hypothetical=info.hypothetical,
+        has_terrain=True,
+        computed_until=shown.computed_until,
+        duration=info.duration,
+        output_interval=info.output_interval,
+        branch_time=None if info.branch_index is None else info.branch_index * info.output_interval,
+        edits=edit_rows(document.edits, desk.book.edits_below(shown.run, document.revision)),
+        can_undo=document.can_undo and desk.is_open,
+        can_redo=document.can_redo and desk.is_open,
+        can_recalculate=desk.is_open and len(shown.timeline) > 0 and not is_waiting,
+        is_recalculating=is_waiting,
+        recalculate_latency_s=None if recalculated is None else recalculated.first_frame_s,
+        speed_x_real_time=None if progress is None else progress.speed_x_real_time,
+        volume_error_relative=None if progress is None else progress.volume_error_relative,
+    )
+
+
+def point_readout(shown: ShownRun, feed: WaterFeed, at: tuple[float, float] | None) -> PointReadout | None:
+    """Return ground and water at a map point, None without a point or outside the terrain."""
+    if at is None:
+        return None
+    depths = feed.depths()
+    if depths is None:
+        return readout(probe(shown.heightfield, *at))
+    first, second, alpha = depths
+    return readout(probe(shown.heightfield, *at, first, second, alpha))

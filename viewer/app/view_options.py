@@ -1,0 +1,52 @@
+"""View options by name, as menus and scripts set them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+from viewer.commands import CommandError
+from viewer.render import RenderOptions, WaterStyle
+
+__all__ = ["OPTION_NAMES", "changed_options"]
+
+_SWITCHES = (
+    "wireframe",
+    "show_blocks",
+    "show_water",
+    "show_terrain",
+    "show_sky",
+    "show_imagery",
+    "full_mesh",
+    "fog",
+)
+_NUMBERS = {
+    "exaggeration": (0.1, 20.0),
+    "tau_px": (0.1, 100.0),
+    "contour_interval": (0.0, 1000.0),
+    "light_azimuth_deg": (0.0, 360.0),
+    "light_elevation_deg": (5.0, 90.0),
+}
+OPTION_NAMES = (*_SWITCHES, *_NUMBERS, "depth_classes")
+
+
+def changed_options(options: RenderOptions, name: str, value: bool | float | str) -> RenderOptions:
+    """Return `options` with option `name` set to `value`.
+
+    Raises:
+        CommandError: an unknown name or a value that is not allowed.
+    """
+    if name == "depth_classes" and isinstance(value, bool):
+        style = WaterStyle.DEPTH_CLASSES if value else WaterStyle.NATURAL
+        return dataclasses.replace(options, water_style=style)
+    if name in _SWITCHES and isinstance(value, bool):
+        return dataclasses.replace(options, **{name: value})  # type: ignore[arg-type]
+    if name in _NUMBERS and isinstance(value, (int, float)) and not isinstance(value, bool):
+        low, high = _NUMBERS[name]
+        if math.isfinite(value) and low <= value <= high:
+            return dataclasses.replace(options, **{name: float(value)})  # type: ignore[arg-type]
+        raise CommandError(f"option {name} = {value!r} is not allowed; it must be from {low:g} to {high:g}")
+    if name not in OPTION_NAMES:
+        raise CommandError(f"option {name!r} is unknown; known are {', '.join(OPTION_NAMES)}")
+    kind = "a number" if name in _NUMBERS else "true or false"
+    raise CommandError(f"option {name} = {value!r} is not allowed; it must be {kind}")

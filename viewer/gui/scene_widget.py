@@ -1,0 +1,223 @@
+"""The picture: a QOpenGLWidget that hands its framebuffer to a painter and its events to the tools."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from PySide6.QtCore import QEvent, QPointF, Qt, Signal
+from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QSurfaceFormat, QWheelEvent
+from PySide6.QtOpenGLWidgets import QOpenGLWidget
+from PySide6.QtWidgets import QWidget
+
+from viewer.commands import Command
+from viewer.errors import ViewerError
+from viewer.gui.conductor import Conductor, Painter
+from viewer.tools import PointerEvent, Toolbox
+from viewer.tools.pointer import Button, PointerKind
+
+__all__ = ["SceneWidget", "surface_format"]
+
+WHEEL_NOTCH = 120.0
+FRAME_RATE_SMOOTHING = 0.9
+
+_BUTTONS: dict[Qt.MouseButton, Button] = {
+    Qt.MouseButton.LeftButton: "left",
+    Qt.MouseButton.MiddleButton: "middle",
+    Qt.MouseButton.RightButton: "right",
+}
+_KEYS = {
+    Qt.Key.Key_W: "w",
+    Qt.Key.Key_A: "a",
+    Qt.Key.Key_S: "s",
+    Qt.Key.Key_D: "d",
+    Qt.Key.Key_Q: "q",
+    Qt.Key.Key_E: "e",
+    Qt.Key.Key_Left: "left",
+    Qt.Key.Key_Right: "right",
+    Qt.Key.Key_Up: "up",
+    Qt.Key.Key_Down: "down",
+    Qt.Key.Key_Return: "enter",
+    Qt.Key.Key_Enter: "enter",
+    Qt.Key.Key_Escape: "escape",
+}
+
+
+def surface_format() -> QSurfaceFormat:
+    """Return the format asked of every window: OpenGL 4.1 core, which macOS and old graphics chips have."""
+    wanted = QSurfaceFormat()
+    wanted.setRenderableType(QSurfaceFormat.RenderableType.OpenGL)
+    wanted.setVersion(4, 1)
+    wanted.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)
+    wanted.setDepthBufferSize(24)
+    wanted.setSwapInterval(1)
+    return wanted
+
+
+class SceneWidget(QOpenGLWidget):
+    """The picture of the flood.
+
+    Signals:
+        failed: no picture can be drawn; the text says why.
+
+    Attributes:
+        frames_per_second: smoothed rate of the pictures drawn in a row.
+        pictures: number of pictures drawn.
+    """
+
+    failed = Signal(str)
+
+    def __init__(self, conductor: Conductor, painter: Painter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setFormat(surface_format())
+        self.setMinimumSize(320, 240)
+        self.setMouseTracking(True)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAccessibleName("Picture of the flood")
+        self._conductor = conductor
+        self._painter = painter
+        self._toolbox = Toolbox()
+        self._hover: QPointF | None = None
+        self._is_open = False
+        self._last_paint = 0.0
+        self.frames_per_second = 0.0
+        self.pictures = 0
+
+    def initializeGL(self) -> None:
+        """Hand the new context to the painter."""
+        try:
+            self._painter.open()
+        except ViewerError as error:
+            self.failed.emit(str(error))
+            return
+        self._is_open = True
+        self.context().aboutToBeDestroyed.connect(self.release)
+
+    def paintGL(self) -> None:
+        """Draw the scene; then look up what lies under the pointer, while the depths are at hand."""
+        if not self._is_open:
+            return
+        ratio = self.devicePixelRatio()
+        width, height = max(1, round(self.width() * ratio)), max(1, round(self.height() * ratio))
+        self._painter.paint(self.defaultFramebufferObject(), width, height)
+        self._count_picture()
+        if self._hover is not None:
+            position, self._hover = self._hover, None
+            self._send(
+                self._toolbox.pointer(self._pointer("move", position, "none"), is_drawing=self._is_drawing)
+            )
+
+    def release(self) -> None:
+        """Release the painter's objects while the context still lives. May be called twice."""
+        if self._is_open:
+            self._is_open = False
+            self.makeCurrent()
+            self._painter.close()
+            self.doneCurrent()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Pass a press on to the tools."""
+        self._mouse("press", event, with_ground=True)
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Pass a double click on to the tools."""
+        self._mouse("double", event, with_ground=True)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """Pass a release on to the tools."""
+        self._mouse("release", event, with_ground=True)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Pass a drag on at once; a bare hover waits for the next picture."""
+        if event.buttons() == Qt.MouseButton.NoButton:
+            self._hover = event.position()
+            self.update()
+            return
+        held = next((button for button in _BUTTONS if event.buttons() & button), Qt.MouseButton.NoButton)
+        self._mouse("move", event, with_ground=False, button=held)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Pass the wheel on to the tools."""
+        steps = event.angleDelta().y() / WHEEL_NOTCH
+        pointer = self._pointer("wheel", event.position(), "none", steps=steps, with_ground=False)
+        self._send(self._toolbox.pointer(pointer, is_drawing=self._is_drawing))
+        event.accept()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """The pointer is over the picture no more."""
+        self._hover = None
+        self._send(self._toolbox.orbit.handle(PointerEvent("leave", 0.0, 0.0)))
+        super().leaveEvent(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Pass a key on to the tools."""
+        name = _KEYS.get(Qt.Key(event.key()))
+        if name is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            super().keyPressEvent(event)
+        elif not event.isAutoRepeat():
+            self._send(self._toolbox.key_pressed(name, is_drawing=self._is_drawing))
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        """Pass a key on to the tools."""
+        name = _KEYS.get(Qt.Key(event.key()))
+        if name is None:
+            super().keyReleaseEvent(event)
+        elif not event.isAutoRepeat():
+            self._send(self._toolbox.key_released(name))
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        """Without the keyboard no key is held."""
+        self._send(self._toolbox.keyboard_lost())
+        super().focusOutEvent(event)
+
+    @property
+    def _is_drawing(self) -> bool:
+        return self._conductor.status().is_drawing
+
+    def _mouse(
+        self,
+        kind: PointerKind,
+        event: QMouseEvent,
+        *,
+        with_ground: bool,
+        button: Qt.MouseButton | None = None,
+    ) -> None:
+        name = _BUTTONS.get(event.button() if button is None else button, "none")
+        shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+        pointer = self._pointer(kind, event.position(), name, shift=shift, with_ground=with_ground)
+        self._send(self._toolbox.pointer(pointer, is_drawing=self._is_drawing))
+        event.accept()
+
+    def _pointer(
+        self,
+        kind: PointerKind,
+        position: QPointF,
+        button: Button,
+        *,
+        shift: bool = False,
+        steps: float = 0.0,
+        with_ground: bool = True,
+    ) -> PointerEvent:
+        ground = None
+        if with_ground and self._is_open:
+            ratio = self.devicePixelRatio()
+            self.makeCurrent()
+            ground = self._painter.ground_at(position.x() * ratio, position.y() * ratio)
+        height = max(1, self.height())
+        return PointerEvent(kind, position.x() / height, position.y() / height, button, shift, steps, ground)
+
+    def _send(self, commands: Sequence[Command]) -> None:
+        for command in commands:
+            self._conductor.dispatch(command)
+        if commands:
+            self.update()
+
+    def _count_picture(self) -> None:
+        now = time.monotonic()
+        span = now - self._last_paint
+        self._last_paint = now
+        self.pictures += 1
+        if 0.0 < span < 1.0:
+            rate = 1.0 / span
+            keep = FRAME_RATE_SMOOTHING if self.frames_per_second > 0.0 else 0.0
+            self.frames_per_second = keep * self.frames_per_second + (1.0 - keep) * rate

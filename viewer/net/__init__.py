@@ -1,0 +1,18 @@
+"""The socket and what waits between it and the picture; knows no OpenGL and no GUI."""
+
+from viewer.net.connection_thread import ConnectionState, ConnectionThread, NotConnected
+from viewer.net.frame_loader import DecodedWater, FrameKey, FrameLoader
+from viewer.net.mailbox import Mailbox, MailboxFull
+from viewer.net.reconnect import BackOff
+
+__all__ = [
+    "BackOff",
+    "ConnectionState",
+    "ConnectionThread",
+    "DecodedWater",
+    "FrameKey",
+    "FrameLoader",
+    "Mailbox",
+    "MailboxFull",
+    "NotConnected",
+]

@@ -1,0 +1,280 @@
+"""The thread that owns the socket: connect, read, write, and come back after a loss.
+
+One daemon thread reads and a second one writes, both blocking; the thread that draws meets them only at the
+mailbox and at the outgoing queue, so neither a slow network nor a slow picture holds up the other. The socket
+carries what `protocol.ClientSession` says; nothing here interprets a message beyond telling frames from
+control.
+"""
+
+from __future__ import annotations
+
+import itertools
+import queue
+import threading
+import time
+import urllib.parse
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Subprotocol
+
+import protocol
+from viewer.net.mailbox import Mailbox, MailboxFull
+from viewer.net.reconnect import BackOff
+
+__all__ = ["ConnectionState", "ConnectionThread", "NotConnected"]
+
+OPEN_TIMEOUT_S = 10.0
+CLOSE_TIMEOUT_S = 2.0
+PING_INTERVAL_S = 20.0
+OUTGOING_LIMIT = 1024
+REFUSED_STATUS = frozenset({400, 401, 403, 404, 426})
+REFUSED_CLOSE_CODES = frozenset({1002, 1003, 1008, 4400, 4401, 4403})
+LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
+
+Phase = Literal["connecting", "open", "waiting", "refused", "closed"]
+
+
+class NotConnected(Exception):
+    """A message cannot leave: there is no connection now, or too much waits for it."""
+
+
+@dataclass(frozen=True)
+class ConnectionState:
+    """What the connection is doing.
+
+    Attributes:
+        phase: "connecting", "open", "waiting" (for the next attempt), "refused" (no use to try again) or
+            "closed".
+        text: one sentence for the user.
+        attempt: number of the coming or present attempt since the connection was last open.
+        retry_at: `time.monotonic()` value of the next attempt [s]; None unless waiting.
+    """
+
+    phase: Phase
+    text: str
+    attempt: int = 0
+    retry_at: float | None = None
+
+    def sentence(self, now: float) -> str:
+        """Return the text for the status bar, with an honest countdown while waiting."""
+        if self.retry_at is None:
+            return self.text
+        return f"{self.text}; reconnecting in {max(0.0, self.retry_at - now):.0f} s (attempt {self.attempt})"
+
+
+class ConnectionThread:
+    """A connection to a solver service that keeps itself alive.
+
+    Args:
+        url: websocket address, e.g. `ws://127.0.0.1:8765/v1/stream`.
+        token: bearer token, None when the service asks for none.
+        client: name told to the service.
+        back_off: waiting times between attempts.
+        woken: called (from a network thread) after something was put into the mailbox.
+
+    Attributes:
+        mailbox: what came in: control messages (a `Welcome` opens each new connection) and packed frames.
+        state: what the connection is doing now; to be polled.
+        resume_point: what the viewer has already; sent in the hello after a loss.
+    """
+
+    def __init__(
+        self,
+        url: str,
+        token: str | None,
+        *,
+        client: str = "fev-viewer",
+        back_off: BackOff | None = None,
+        woken: Callable[[], None] | None = None,
+    ) -> None:
+        self.url = url
+        self.mailbox: Mailbox[protocol.ClientEvent, protocol.Frame] = Mailbox()
+        self.resume_point: protocol.ResumePoint | None = None
+        self._token = token
+        self._client = client
+        self._back_off = back_off if back_off is not None else BackOff()
+        self._woken = woken
+        self._ids = itertools.count(1)
+        self._outgoing: queue.Queue[bytes | None] = queue.Queue(OUTGOING_LIMIT)
+        self._lock = threading.Lock()
+        self._session: protocol.ClientSession | None = None
+        self._socket: ClientConnection | None = None
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="fev-connection", daemon=True)
+        self.state = ConnectionState("connecting", f"connecting to {url}")
+
+    def start(self) -> None:
+        """Begin to connect."""
+        self._thread.start()
+
+    def next_id(self) -> int:
+        """Return a command id that was not used on this connection object before."""
+        return next(self._ids)
+
+    def send(self, message: protocol.ClientMessage) -> None:
+        """Pack a message and queue it for the writer thread.
+
+        Raises:
+            NotConnected: the connection is not open, or its outgoing queue is full.
+        """
+        with self._lock:
+            if self._session is None or self._session.state is not protocol.SessionState.OPEN:
+                raise NotConnected(f"not connected to {self.url}")
+            try:
+                packed = self._session.send(message)
+            except protocol.Overloaded as error:
+                raise NotConnected(str(error)) from None
+        try:
+            self._outgoing.put_nowait(packed)
+        except queue.Full:
+            raise NotConnected(f"{OUTGOING_LIMIT} messages wait for {self.url} already") from None
+
+    def close(self) -> None:
+        """End the connection and its threads. May be called twice."""
+        self._stop.set()
+        socket = self._socket
+        if socket is not None:
+            socket.close()
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join(CLOSE_TIMEOUT_S + 1.0)
+
+    def _run(self) -> None:
+        while not self._stop.is_set():
+            try:
+                reason = self._connect_and_read()
+            except _Refused as refusal:
+                self._tell(ConnectionState("refused", str(refusal)))
+                return
+            if self._stop.is_set():
+                break
+            delay = self._back_off.next_delay()
+            self._tell(ConnectionState("waiting", reason, self._back_off.attempt, time.monotonic() + delay))
+            self._stop.wait(delay)
+        self._tell(ConnectionState("closed", "connection closed"))
+
+    def _connect_and_read(self) -> str:
+        """Hold one connection from opening to its end; return why it ended.
+
+        Raises:
+            _Refused: the service will not have us, and trying again would not help.
+        """
+        self._tell(ConnectionState("connecting", f"connecting to {self.url}", self._back_off.attempt))
+        try:
+            socket = self._open_socket()
+        except (OSError, TimeoutError) as error:
+            return f"no connection to {self.url}: {_cause(error)}"
+        self._socket = socket
+        session = protocol.ClientSession(self._client, self._token)
+        self._outgoing = queue.Queue(OUTGOING_LIMIT)
+        writer = threading.Thread(
+            target=self._write, args=(socket, self._outgoing), name="fev-connection-writer", daemon=True
+        )
+        writer.start()
+        try:
+            with self._lock:
+                self._session = session
+                self._outgoing.put(session.open(self.resume_point))
+            return self._read(socket, session)
+        finally:
+            with self._lock:
+                self._session = None
+            self._outgoing.put(None)
+            socket.close()
+            writer.join(CLOSE_TIMEOUT_S)
+            self._socket = None
+
+    def _open_socket(self) -> ClientConnection:
+        headers = {} if self._token is None else {"Authorization": f"Bearer {self._token}"}
+        try:
+            host = urllib.parse.urlsplit(self.url).hostname or ""
+            socket = connect(
+                self.url,
+                additional_headers=headers,
+                subprotocols=[Subprotocol(protocol.PROTOCOL_VERSION)],
+                compression=None,
+                max_size=protocol.limits.OUTBOUND_MAX_BYTES,
+                open_timeout=OPEN_TIMEOUT_S,
+                close_timeout=CLOSE_TIMEOUT_S,
+                ping_interval=PING_INTERVAL_S,
+                proxy=None if host in LOOPBACK_HOSTS else True,
+            )
+        except (InvalidURI, ValueError) as error:
+            raise _Refused(
+                f"{self.url!r} is not a websocket address (ws://HOST:PORT/v1/stream): {error}"
+            ) from None
+        except InvalidStatus as error:
+            status = error.response.status_code
+            if status in (401, 403):
+                raise _Refused(f"{self.url} refused the token (HTTP {status})") from None
+            if status in REFUSED_STATUS:
+                raise _Refused(
+                    f"{self.url} is not a solver service that speaks fev.v1 (HTTP {status})"
+                ) from None
+            raise OSError(f"HTTP status {status}") from None
+        except InvalidHandshake as error:
+            raise _Refused(f"{self.url} is not a solver service that speaks fev.v1: {error}") from None
+        if socket.subprotocol != protocol.PROTOCOL_VERSION:
+            socket.close()
+            raise _Refused(f"{self.url} does not speak {protocol.PROTOCOL_VERSION}")
+        return socket
+
+    def _read(self, socket: ClientConnection, session: protocol.ClientSession) -> str:
+        try:
+            for data in socket:
+                if isinstance(data, str):
+                    return f"{self.url} sent text where fev.v1 has bytes"
+                with self._lock:
+                    messages = session.receive(data)
+                for message in messages:
+                    self._deliver(message)
+                if messages and self._woken is not None:
+                    self._woken()
+        except ConnectionClosed:
+            pass  # told by the close code below
+        except protocol.ProtocolError as error:
+            return f"{self.url} sent something that is not fev.v1: {error}"
+        except MailboxFull as error:
+            return f"the connection was cut: {error}"
+        code, reason = socket.close_code, socket.close_reason
+        if code in REFUSED_CLOSE_CODES:
+            raise _Refused(f"{self.url} closed the connection: {reason or f'code {code}'}")
+        return f"connection to {self.url} lost" + (f": {reason}" if reason else "")
+
+    def _deliver(self, message: protocol.ClientEvent) -> None:
+        if isinstance(message, protocol.Frame):
+            self.mailbox.put_frame(message)
+            return
+        if isinstance(message, protocol.Welcome):
+            self._back_off.reset()
+            self._tell(ConnectionState("open", f"connected to {self.url}"))
+        self.mailbox.put_control(message)
+
+    def _tell(self, state: ConnectionState) -> None:
+        with self._lock:
+            self.state = state
+        if self._woken is not None:
+            self._woken()
+
+    @staticmethod
+    def _write(socket: ClientConnection, outgoing: queue.Queue[bytes | None]) -> None:
+        while (packed := outgoing.get()) is not None:
+            try:
+                socket.send(packed)
+            except ConnectionClosed:
+                return  # the reader tells why
+
+
+class _Refused(Exception):
+    """The service will not have us; the text says why."""
+
+
+def _cause(error: BaseException) -> str:
+    if isinstance(error, ConnectionRefusedError):
+        return "nothing listens there"
+    if isinstance(error, TimeoutError):
+        return f"no answer within {OPEN_TIMEOUT_S:.0f} s"
+    return str(error) or type(error).__name__

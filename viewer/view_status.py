@@ -1,0 +1,132 @@
+"""What panels, status line and scripts read of the viewer's state: plain frozen values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+__all__ = ["CaseRow", "EditRow", "EditSettings", "PointReadout", "RunRow", "ViewStatus", "time_text"]
+
+
+def time_text(seconds: float) -> str:
+    """Return a simulation time as `d hh:mm:ss`, the days only when there are any."""
+    whole = int(seconds + 1e-6)
+    days, rest = divmod(whole, 86_400)
+    clock = f"{rest // 3600:02d}:{rest % 3600 // 60:02d}:{rest % 60:02d}"
+    return f"{days}d {clock}" if days else clock
+
+
+@dataclass(frozen=True)
+class CaseRow:
+    """A case the service offers.
+
+    Attributes:
+        duration: the case's own length [s].
+        output_interval: its own time between frames [s].
+        cells: number of cells.
+    """
+
+    name: str
+    title: str
+    duration: float
+    output_interval: float
+    cells: int
+    hypothetical: bool
+
+
+@dataclass(frozen=True)
+class RunRow:
+    """A run or branch of the service.
+
+    Attributes:
+        branch_time: simulation time where it left its parent [s]; None for a run of its own.
+        computed_until: time of its newest frame [s].
+    """
+
+    run: str
+    parent: str | None
+    title: str
+    status: str
+    branch_time: float | None
+    computed_until: float
+    duration: float
+    device: str
+
+
+@dataclass(frozen=True)
+class EditRow:
+    """An edit of the working list; `is_applied`: the shown run was computed with it."""
+
+    id: str
+    text: str
+    is_applied: bool
+
+
+@dataclass(frozen=True)
+class EditSettings:
+    """What the next edit will be: width [m], magnitude [m], "raise" or "lower", "modulate" or "replace"."""
+
+    width: float = 40.0
+    magnitude: float = 8.0
+    operation: str = "raise"
+    type: str = "modulate"
+
+
+@dataclass(frozen=True)
+class PointReadout:
+    """Water and ground at a map point: depth [m], water level and ground elevation [m above the datum]."""
+
+    x: float
+    y: float
+    ground: float
+    depth: float
+    level: float | None
+
+
+@dataclass(frozen=True)
+class ViewStatus:
+    """The whole state that is shown outside the picture.
+
+    Attributes:
+        connection: one sentence about the connection.
+        message: the newest notice, error or result, one sentence.
+        time: playback time [s].
+        computed_until: time of the newest frame of the shown run [s].
+        branch_time: where the shown run left its parent [s], None when it has none.
+        speed_x_real_time: simulated seconds per wall second of the computation.
+        recalculate_latency_s: from the last Recalculate to its first changed frame on the picture [s].
+        depth_record: (times [s], depths [m]) at the probed point, frames loaded so far.
+    """
+
+    connection: str = "not connected"
+    is_connected: bool = False
+    message: str = ""
+    devices: tuple[str, ...] = ()
+    cases: tuple[CaseRow, ...] = ()
+    runs: tuple[RunRow, ...] = ()
+    shown_run: str | None = None
+    title: str = ""
+    hypothetical: bool = False
+    has_terrain: bool = False
+    time: float = 0.0
+    computed_until: float = 0.0
+    duration: float = 0.0
+    output_interval: float = 0.0
+    branch_time: float | None = None
+    is_playing: bool = False
+    follows_live: bool = False
+    playback_speed: float = 1.0
+    is_drawing: bool = False
+    drawn_vertices: int = 0
+    edit_settings: EditSettings = field(default_factory=EditSettings)
+    edits: tuple[EditRow, ...] = ()
+    can_undo: bool = False
+    can_redo: bool = False
+    can_recalculate: bool = False
+    is_recalculating: bool = False
+    recalculate_latency_s: float | None = None
+    hover: PointReadout | None = None
+    probe: PointReadout | None = None
+    depth_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    speed_x_real_time: float | None = None
+    volume_error_relative: float | None = None
+    options: tuple[tuple[str, bool | float | str], ...] = ()
