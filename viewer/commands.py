@@ -249,10 +249,10 @@ class ReleaseMoves:
 
 @dataclass(frozen=True)
 class FlyTo:
-    """Glide to look at (x, y) [m] from `distance` [m], `azimuth` and `elevation` [deg], in `seconds` of
-    wall time.
+    """Glide to look at (x, y) [m] from `distance` [m], in `seconds` of wall time (0: be there at once).
 
-    Azimuth is the compass bearing in which the camera looks (0 = to the north, 90 = to the east), elevation
+    `azimuth` and `elevation` are in degrees. Azimuth is the compass bearing in which the camera looks (0 =
+    to the north, 90 = to the east), elevation
     the height of the eye above the horizon; None keeps the present value.
     """
 

@@ -66,7 +66,7 @@ class LeveeLine:
 
     @property
     def length(self) -> float:
-        """[m]"""
+        """Length [m]."""
         return math.dist(self.start, self.end)
 
 

@@ -20,7 +20,7 @@ __all__ = ["PICTURE_SIZE", "HeadlessError", "HeadlessSession"]
 PICTURE_SIZE = (1280, 720)
 IDLE_S = 0.02
 PAINT_PERIOD_S = 0.4
-"""While waiting, a picture is drawn at most this often, so that drawing leaves the processor to the solver."""
+"""While waiting, a picture is drawn at most this often: the processor belongs to the solver."""
 SETTLE_TIMEOUT_S = 30.0
 
 

@@ -113,7 +113,7 @@ class LocalService:
         return lines[-1].strip() if lines else ""
 
     def close(self) -> None:
-        """End the service (close its input, then terminate, then kill); remove the token. May be called twice."""
+        """End the service (close its input, terminate, kill); remove the token. May be called twice."""
         process = self._process
         if process.stdin is not None and not process.stdin.closed:
             with contextlib.suppress(OSError):  # it has ended already, which is what closing asks for

@@ -367,7 +367,7 @@ class ViewerApp:
 
     @property
     def _is_held(self) -> bool:
-        """Whether the picture waits for the first frame of a branch rather than step back to the one before."""
+        """Whether the picture waits for the first frame of a branch rather than step back by one."""
         shown = self.shown
         return (
             shown is not None

@@ -8,7 +8,6 @@ that hold them.
 from __future__ import annotations
 
 import ctypes
-import os
 import sys
 
 from PySide6.QtGui import QSurfaceFormat
@@ -18,7 +17,7 @@ from viewer.errors import ContextError
 from viewer.gui.scene_widget import surface_format
 from viewer.gui.theme import apply_theme
 
-__all__ = ["has_display", "missing_packages", "start_qt"]
+__all__ = ["missing_packages", "start_qt"]
 
 XCB_LIBRARIES = {
     "libxcb-cursor.so.0": "libxcb-cursor0",
@@ -33,13 +32,6 @@ XCB_LIBRARIES = {
     "libGL.so.1": "libgl1",
     "libEGL.so.1": "libegl1",
 }
-
-
-def has_display() -> bool:
-    """Whether a window can appear: on Linux only where a display is named."""
-    if not sys.platform.startswith("linux"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def missing_packages(libraries: dict[str, str] = XCB_LIBRARIES) -> list[str]:
@@ -62,10 +54,6 @@ def start_qt(arguments: list[str]) -> QApplication:
     running = QApplication.instance()
     if isinstance(running, QApplication):
         return running
-    if not has_display():
-        raise ContextError(
-            "there is no display for a window: set DISPLAY or WAYLAND_DISPLAY, or use --headless DIR"
-        )
     if sys.platform.startswith("linux") and (missing := missing_packages()):
         raise ContextError(
             f"Qt cannot open a window without these system packages: sudo apt-get install {' '.join(missing)}"
