@@ -143,7 +143,7 @@ class DecodedFrame:
         time: simulated time [s].
         revision: revision of the edits in the bed.
         scale: depth of one unit of q [m].
-        q: quantised depth, uint16 [nrows, ncols].
+        q: quantised depth, uint16 [nrows, ncols], read-only.
         states: block states, uint8 [block_rows, block_cols].
     """
 
@@ -202,6 +202,7 @@ class FrameDecoder:
             cells = cells + key_q[mask]
         q = np.zeros((self.layout.nrows, self.layout.ncols), dtype=np.uint16)
         q[mask] = cells
+        q.flags.writeable = False
         if frame.is_key:
             self._keep(frame, q)
         return DecodedFrame(frame.run, frame.index, frame.time, frame.revision, frame.scale, q, states)

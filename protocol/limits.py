@@ -57,8 +57,8 @@ MAX_EDITS = 1024
 MAX_LOG_VERTICES = 32_768
 """Most vertices of all edits in the working list of a run."""
 
-MAX_EDIT_WORK = 1 << 25
-"""Most candidate cells that the raster of one edit may look at."""
+MAX_EDIT_WORK = 1 << 22
+"""Most cells (for an area: crossings of sides and rows) that the raster of one edit may look at."""
 
 MAX_PENDING_COMMANDS = 64
 """Most commands a client may have unanswered."""

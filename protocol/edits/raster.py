@@ -185,7 +185,7 @@ def _rasterise_area(edit: EditArea, grid: GridGeometry) -> tuple[Int32Array, Int
     counts = row_end - row_first
     top, bottom = int(row_end.max()), int(row_first.min())
     left, right = int(x.min()) // SUBCELLS, min(int(x.max()) // SUBCELLS + 1, grid.ncols)
-    _check_work(edit, max(int(counts.sum()), (top - bottom) * (right - left)))
+    _check_work(edit, int(counts.sum()))
     edge, offset = _ranges(counts)
     row = row_first[edge] + offset
     # First column whose centre is not west of the crossing, by exact division.
