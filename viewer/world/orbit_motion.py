@@ -83,7 +83,7 @@ class Flight:
                 mix(a.target[1], b.target[1]),
                 mix(a.target[2], b.target[2]),
             ),
-            distance=math.exp(mix(math.log(a.distance), math.log(b.distance))),
+            distance=a.distance * (b.distance / a.distance) ** s,
             azimuth=math.remainder(a.azimuth + s * turn, 2.0 * math.pi),
             elevation=mix(a.elevation, b.elevation),
             fov_y=mix(a.fov_y, b.fov_y),

@@ -1,0 +1,91 @@
+import numpy as np
+import pytest
+
+from protocol import GridGeometry
+from viewer.errors import TerrainDataError
+from viewer.world import Heightfield, union_rect
+
+GRID = GridGeometry(nrows=4, ncols=5, dx=2.0, x0=10.0, y0=20.0)
+PLANE = np.array([[3.0 * col + 7.0 * row for col in range(5)] for row in range(4)], dtype=np.float32)
+
+
+def test_a_sample_at_a_cell_centre_is_the_cell() -> None:
+    field = Heightfield(GRID, PLANE)
+
+    for row in range(4):
+        for col in range(5):
+            assert field.sample(*GRID.center(row, col)) == PLANE[row, col]
+
+
+def test_a_plane_is_sampled_exactly_between_centres() -> None:
+    assert Heightfield(GRID, PLANE).sample(*GRID.center(1.25, 2.5)) == pytest.approx(3.0 * 2.5 + 7.0 * 1.25)
+
+
+def test_samples_past_the_border_are_those_of_the_border() -> None:
+    field = Heightfield(GRID, PLANE)
+
+    assert field.sample(-100.0, -100.0) == PLANE[0, 0]
+    assert field.sample(1000.0, 1000.0) == PLANE[3, 4]
+
+
+def test_arrays_are_sampled_like_single_places() -> None:
+    field = Heightfield(GRID, PLANE)
+    x, y = np.array([11.0, 14.3, 19.0]), np.array([21.0, 22.7, 26.5])
+
+    assert field.sample(x, y).tolist() == [field.sample(a, b) for a, b in zip(x, y, strict=True)]
+
+
+def test_changes_since_a_revision_are_one_rectangle() -> None:
+    field = Heightfield(GRID, PLANE)
+    field.set(PLANE + 1.0, (0, 1, 2, 3))
+    seen = field.revision
+    field.set(PLANE + 2.0, (1, 0, 2, 2))
+    field.set(PLANE + 3.0, (3, 4, 4, 5))
+
+    assert field.changed_since(0) == (0, 0, 4, 5)
+    assert field.changed_since(seen) == (1, 0, 4, 5)
+    assert field.changed_since(field.revision) is None
+
+
+def test_a_revision_too_old_to_remember_means_everything() -> None:
+    field = Heightfield(GRID, PLANE)
+    for _ in range(200):
+        field.set(PLANE, (1, 1, 2, 2))
+
+    assert field.changed_since(3) == (0, 0, 4, 5)
+    assert field.changed_since(field.revision - 1) == (1, 1, 2, 2)
+
+
+def test_an_empty_change_is_no_change() -> None:
+    field = Heightfield(GRID, PLANE)
+    field.set(PLANE, (2, 2, 2, 4))
+
+    assert field.revision == 0
+
+
+def test_the_range_follows_an_edit() -> None:
+    field = Heightfield(GRID, PLANE)
+    raised = PLANE.copy()
+    raised[2, 2] = 99.0
+    field.set(raised, (2, 2, 3, 3))
+
+    assert (field.z_min, field.z_max) == (0.0, 99.0)
+
+
+@pytest.mark.parametrize(
+    ("z_b", "part"),
+    [
+        (np.zeros((5, 4)), "shape"),
+        (np.full((4, 5), np.nan), "not finite"),
+        (np.full((4, 5), np.inf), "not finite"),
+    ],
+)
+def test_terrain_that_does_not_fit_is_refused(z_b: np.ndarray, part: str) -> None:
+    with pytest.raises(TerrainDataError, match=part):
+        Heightfield(GRID, z_b)
+
+
+def test_the_union_with_nothing_is_the_rectangle_itself() -> None:
+    assert union_rect(None, (1, 2, 3, 4)) == (1, 2, 3, 4)
+    assert union_rect((1, 2, 3, 4), None) == (1, 2, 3, 4)
+    assert union_rect((1, 2, 3, 4), (0, 3, 2, 9)) == (0, 2, 3, 9)
