@@ -1,4 +1,4 @@
-"""Every package that the code imports is asked for by the extra that the code belongs to, and none in vain."""
+"""Every package that the code imports is asked for by the extra it belongs to, and none in vain."""
 
 import ast
 import sys
