@@ -62,8 +62,7 @@ class CheckpointStore:
         self._keep = keep
 
     def write(self, run: str, state: StoredState) -> CheckpointRecord:
-        """Store a state; when this returns it survives a power cut, and older ones beyond the budget are
-        gone.
+        """Store a state; when this returns it survives a power cut. Older ones beyond the budget go.
 
         Raises:
             StoreError: the disk is full or broken; nothing of the state is visible.
@@ -180,7 +179,7 @@ def _checksum(state: StoredState) -> int:
     for name, array in sorted(state.arrays.items()):
         head = f"{name} {array.dtype.str} {array.shape}"
         crc = zlib.crc32(
-            np.ascontiguousarray(array).reshape(-1).view(np.uint8), zlib.crc32(head.encode(), crc)
+            np.ascontiguousarray(array).reshape(-1).view(np.uint8).data, zlib.crc32(head.encode(), crc)
         )
     for name, value in sorted(state.scalars.items()):
         crc = zlib.crc32(f"{name}={_text(value)}".encode(), crc)

@@ -123,7 +123,8 @@ class FrameReader:
                 frame = file.read(record.size)
         except OSError as error:
             raise StoreError(
-                f"frame {record.index} of run {record.run} cannot be read from {path}: {error.strerror or error}"
+                f"frame {record.index} of run {record.run} cannot be read from {path}: "
+                f"{error.strerror or error}"
             ) from error
         if len(frame) != record.size or zlib.crc32(frame) != record.crc32:
             raise StoreError(f"frame {record.index} of run {record.run} is damaged in {path}")

@@ -1,0 +1,36 @@
+"""What the run tree keeps of a case, so that runs can be listed and replayed without loading it."""
+
+from __future__ import annotations
+
+import msgspec
+
+from protocol import GridInfo
+
+
+class CaseFacts(msgspec.Struct, frozen=True):
+    """Facts of a case that do not change during its runs.
+
+    Attributes:
+        grid: the grid.
+        hypothetical: whether the event never happened.
+        depth_wet: depth below which a cell is sent as dry [m].
+        source: where the data comes from.
+        licence: licence of the data.
+        start_time: clock time of frame 0, ISO 8601 with offset.
+    """
+
+    grid: GridInfo
+    hypothetical: bool
+    depth_wet: float
+    source: str = ""
+    licence: str = ""
+    start_time: str | None = None
+
+    def pack(self) -> bytes:
+        """The stored form."""
+        return msgspec.msgpack.encode(self)
+
+    @staticmethod
+    def unpack(packed: bytes) -> CaseFacts:
+        """Read the stored form."""
+        return msgspec.msgpack.decode(packed, type=CaseFacts)

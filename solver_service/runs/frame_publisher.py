@@ -1,0 +1,155 @@
+"""From the solver to the store: encode, append, commit and tell, on a thread of its own.
+
+The solver hands over (q, states) and goes on; it waits only when the disk is so slow that the queue is full. When the
+store fails (a full disk) nothing is lost: the frame stays in hand, the run is told to pause, and `retry` tries again.
+"""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from protocol import BlockLayout, FrameEncoder, peek_frame
+from solver_service.errors import StoreError
+from solver_service.runs.worker_messages import FrameStored
+from solver_service.store import DataFolder, FrameWriter, RunDatabase
+
+QUEUE_FRAMES = 4
+
+
+@dataclass(frozen=True)
+class QuantisedFrame:
+    """The water of one output time as the device gives it.
+
+    Attributes:
+        run: the run.
+        index: frame index.
+        time: simulated time [s].
+        revision: revision of the edits in the bed.
+        q: quantised depth, uint16 [nrows, ncols].
+        states: block states, uint8 [block_rows, block_cols].
+        scale: depth of one unit [m].
+    """
+
+    run: str
+    index: int
+    time: float
+    revision: int
+    q: NDArray[np.uint16]
+    states: NDArray[np.uint8]
+    scale: float
+
+
+class FramePublisher:
+    """Stores frames in the order in which they come and reports each once it has its row."""
+
+    def __init__(
+        self,
+        folder: DataFolder,
+        epoch: int,
+        report: Callable[[FrameStored], None],
+        trouble: Callable[[str, str], None],
+    ) -> None:
+        """Start the thread.
+
+        Args:
+            folder: the data folder.
+            epoch: epoch of the service.
+            report: called with each stored frame.
+            trouble: called with run and sentence when a frame cannot be stored.
+        """
+        self._folder = folder
+        self._epoch = epoch
+        self._report = report
+        self._trouble = trouble
+        self._slots = threading.Semaphore(QUEUE_FRAMES)
+        self._queue: queue.Queue[tuple[QuantisedFrame, float, float] | None] = queue.Queue()
+        self._retry = threading.Event()
+        self._closing = False
+        self._encoder: FrameEncoder | None = None
+        self._encoder_of: tuple[str, tuple[int, ...]] | None = None
+        self._writer: FrameWriter | None = None
+        self._thread = threading.Thread(target=self._work, name="frame-publisher", daemon=True)
+        self._thread.start()
+
+    def publish(self, frame: QuantisedFrame) -> float:
+        """Hand a frame over; its arrays must not change afterwards.
+
+        Returns:
+            How long the caller waited [s].
+        """
+        begun = clock.perf_counter()
+        self._slots.acquire()
+        waited = clock.perf_counter() - begun
+        self._queue.put((frame, begun, waited))
+        return waited
+
+    def flush(self) -> None:
+        """Wait until everything handed over is stored, or given up because of `close`."""
+        self._queue.join()
+
+    def retry(self) -> None:
+        """Try again to store the frame that could not be stored."""
+        self._retry.set()
+
+    def close(self) -> None:
+        """Store what can be stored and end the thread; a frame in trouble is dropped (it has no row)."""
+        self._closing = True
+        self._retry.set()
+        self._queue.put(None)
+        self._thread.join()
+
+    def _work(self) -> None:
+        database = RunDatabase(self._folder.database, self._epoch)
+        while (job := self._queue.get()) is not None:
+            self._store(*job, database)
+            self._slots.release()
+            self._queue.task_done()
+        self._queue.task_done()
+        if self._writer is not None:
+            self._writer.close()
+        database.close()
+
+    def _store(self, frame: QuantisedFrame, begun: float, waited: float, database: RunDatabase) -> None:
+        encoder, writer = self._tools(frame, database)
+        water = (frame.q, frame.states)
+        packed = encoder.encode(frame.run, frame.index, frame.time, frame.revision, water, scale=frame.scale)
+        key_index = peek_frame(packed).key_index
+        while True:
+            try:
+                record = writer.append(
+                    index=frame.index,
+                    time=frame.time,
+                    revision=frame.revision,
+                    key_index=key_index,
+                    frame=packed,
+                )
+            except StoreError as error:
+                self._retry.clear()
+                if self._closing:
+                    return
+                self._trouble(frame.run, str(error))
+                self._retry.wait()
+                if self._closing:
+                    return
+            else:
+                self._report(FrameStored(record, waited, clock.perf_counter() - begun))
+                return
+
+    def _tools(self, frame: QuantisedFrame, database: RunDatabase) -> tuple[FrameEncoder, FrameWriter]:
+        """Encoder and writer of the run; a run that is taken up begins with a key frame in a segment of its own."""
+        wanted = (frame.run, frame.q.shape)
+        if self._encoder is None or self._writer is None or self._encoder_of != wanted:
+            if self._writer is not None:
+                self._writer.close()
+            nrows, ncols = frame.q.shape
+            self._encoder = FrameEncoder(BlockLayout(nrows, ncols))
+            self._writer = FrameWriter(self._folder, database, frame.run)
+            self._encoder_of = wanted
+        return self._encoder, self._writer

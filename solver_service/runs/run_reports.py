@@ -1,0 +1,131 @@
+"""What workers tell of their runs, turned into status moves, rows and announcements."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+
+from protocol import Notice, Progress, RunChanged
+from solver_service.errors import RunError
+from solver_service.runs.audience import Audience
+from solver_service.runs.run_status import ACTIVE, RunStatus, check_move
+from solver_service.runs.run_tree import Run, RunTree
+from solver_service.runs.store_thread import StoreThread
+from solver_service.runs.worker import Worker
+from solver_service.runs.worker_messages import (
+    CheckpointStored,
+    Failed,
+    FrameStored,
+    Paused,
+    ProgressReport,
+    Remark,
+    Report,
+    Running,
+)
+from solver_service.store import RunDatabase
+
+LOG = logging.getLogger(__name__)
+
+RUN_CHANGED_INTERVAL_S = 0.25
+TEXT_LENGTH = 2000
+
+
+class RunReports:
+    """Hears the reports of all workers on the event loop."""
+
+    def __init__(self, tree: RunTree, store: StoreThread, audience: Audience) -> None:
+        self._tree = tree
+        self._store = store
+        self._audience = audience
+        self._announced_soon: set[str] = set()
+        self.longest_publish_wait_s = 0.0
+
+    def move(self, run: Run, status: RunStatus, reason: str = "") -> None:
+        """Move a run to a status, in memory at once and in the store in its turn, and tell everybody.
+
+        Raises:
+            RunError: the move is not legal.
+        """
+        check_move(run.run, run.status, status)
+        run.status, run.reason = status, reason[:TEXT_LENGTH]
+        self._store.later(RunDatabase.set_status, run.run, status.value, run.reason)
+        self._audience.announce(RunChanged(self._tree.info(run)))
+
+    def hear(self, worker: Worker, report: Report) -> None:
+        """Take a report in."""
+        match report:
+            case FrameStored():
+                self._frame_stored(report)
+            case ProgressReport():
+                self._audience.announce(_progress(report))
+            case Running():
+                run = self._tree.get(report.run)
+                if run.status is RunStatus.STARTING:
+                    self.move(run, RunStatus.RUNNING)
+            case Paused():
+                run = self._tree.get(report.run)
+                if run.status in ACTIVE:
+                    self.move(run, RunStatus.PAUSED, report.message)
+                if report.message:
+                    self._notice("error", f"paused: {report.message}", report.run)
+            case Failed():
+                self._failed(worker, report)
+            case Remark():
+                self._notice("warning", report.message, report.run)
+            case CheckpointStored():
+                LOG.debug("run %s: checkpoint at %s s", report.checkpoint.run, report.checkpoint.time)
+
+    def lost(self, worker: Worker) -> None:
+        """A worker died with a run in its hands."""
+        run = self._tree.get(worker.run or "")
+        run.worker = None
+        if run.status in ACTIVE:
+            reason = "its worker process ended unexpectedly; resume goes on from the last checkpoint"
+            self.move(run, RunStatus.FAILED, reason)
+            self._notice("error", f"failed: {reason}", run.run)
+
+    def _frame_stored(self, report: FrameStored) -> None:
+        frame = report.frame
+        run = self._tree.get(frame.run)
+        self.longest_publish_wait_s = max(self.longest_publish_wait_s, report.waited_s)
+        if frame.index != run.frame_count:
+            raise RunError(f"run {run.run} stored frame {frame.index} where {run.frame_count} was due")
+        run.frames.append(frame)
+        self._audience.frame_stored(run.run)
+        if frame.index >= run.last_index and run.status in (*ACTIVE, RunStatus.PAUSED):
+            self.move(run, RunStatus.FINISHED)
+        elif run.run not in self._announced_soon:
+            self._announced_soon.add(run.run)
+            asyncio.get_running_loop().call_later(RUN_CHANGED_INTERVAL_S, self._announce, run)
+
+    def _announce(self, run: Run) -> None:
+        self._announced_soon.discard(run.run)
+        self._audience.announce(RunChanged(self._tree.info(run)))
+
+    def _failed(self, worker: Worker, report: Failed) -> None:
+        worker.case = None
+        if report.run not in self._tree:
+            LOG.error("worker %d: %s", worker.number, report.message)
+            return
+        run = self._tree.get(report.run)
+        if run.status in ACTIVE:
+            self.move(run, RunStatus.FAILED, report.message)
+        self._notice("error", f"failed: {report.message}", report.run)
+
+    def _notice(self, level: str, text: str, run: str) -> None:
+        LOG.warning("run %s: %s", run, text)
+        self._audience.announce(Notice("error" if level == "error" else "warning", text[:TEXT_LENGTH], run))
+
+
+def _progress(report: ProgressReport) -> Progress:
+    return Progress(
+        run=report.run,
+        time=report.time,
+        steps=report.steps,
+        dt=report.dt,
+        speed_x_real_time=report.speed_x_real_time,
+        wall_s=report.wall_s,
+        cell_steps_per_s=report.cell_steps_per_s,
+        volume_error_relative=report.volume_error_relative,
+        wet_cells=report.wet_cells,
+    )

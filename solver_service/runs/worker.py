@@ -1,0 +1,173 @@
+"""A worker as the event loop of the service sees it: send commands, hear reports, notice its death at once."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import threading
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+
+from solver_service.errors import RunError
+from solver_service.runs.worker_messages import (
+    CaseLoaded,
+    CaseRefused,
+    Command,
+    LoadCase,
+    Quit,
+    Ready,
+    Report,
+    SaveState,
+    StateSaved,
+    WorkerSettings,
+)
+from solver_service.runs.worker_process import start_worker
+
+QUIT_TIMEOUT_S = 4.0
+_numbers = itertools.count(1)
+
+
+class Worker:
+    """One worker process.
+
+    Attributes:
+        number: for logs.
+        run: id of the run it computes or holds, None for a spare one.
+        devices: devices it can use, once it is ready.
+        case: case and device it has loaded, None for none.
+    """
+
+    def __init__(
+        self, on_report: Callable[[Worker, Report], None], on_death: Callable[[Worker], None]
+    ) -> None:
+        """A worker that is not started yet.
+
+        Args:
+            on_report: called on the event loop with every report of a run.
+            on_death: called on the event loop when the process is gone, for whatever reason.
+        """
+        self.number = next(_numbers)
+        self.run: str | None = None
+        self.devices: tuple[str, ...] = ()
+        self.case: tuple[str, str] | None = None
+        self.pid: int | None = None
+        self._on_report = on_report
+        self._on_death = on_death
+        self._ready = asyncio.Event()
+        self._dead = asyncio.Event()
+        self._loaded: asyncio.Future[CaseLoaded] | None = None
+        self._saved: asyncio.Future[bool] | None = None
+        self._process: BaseProcess | None = None
+        self._connection: Connection | None = None
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether its kernels are loaded and it lives."""
+        return self._ready.is_set() and not self._dead.is_set()
+
+    @property
+    def is_dead(self) -> bool:
+        """Whether the process is gone."""
+        return self._dead.is_set()
+
+    async def start(self, settings: WorkerSettings) -> None:
+        """Start the process and the thread that listens to it."""
+        loop = asyncio.get_running_loop()
+        self._process, self._connection = await asyncio.to_thread(start_worker, settings)
+        self.pid = self._process.pid
+        threading.Thread(
+            target=self._listen, args=(loop, self._connection), name=f"worker-{self.number}", daemon=True
+        ).start()
+
+    async def ready(self) -> None:
+        """Wait until the kernels are loaded.
+
+        Raises:
+            RunError: the worker died instead.
+        """
+        waits = [asyncio.ensure_future(event.wait()) for event in (self._ready, self._dead)]
+        await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
+        for wait in waits:
+            wait.cancel()
+        if self._dead.is_set():
+            raise RunError("a worker process ended while it was starting; `fev-solver doctor` says more")
+
+    def send(self, command: Command) -> None:
+        """Tell it something; a dead worker hears nothing, and its death is told by `on_death`."""
+        if self._connection is not None and not self._dead.is_set():
+            try:
+                self._connection.send(command)
+            except OSError:
+                return  # the listening thread sees the same and tells it
+
+    async def load(self, case: str, device: str) -> CaseLoaded:
+        """Load a case.
+
+        Raises:
+            RunError: the case or the device cannot be used; the sentence is the worker's.
+        """
+        self._loaded = asyncio.get_running_loop().create_future()
+        self.send(LoadCase(case, device))
+        loaded = await self._loaded
+        self.case = (case, device)
+        return loaded
+
+    async def save_state(self, run: str, index: int) -> bool:
+        """Have a state put on disk; False when the worker does not hold it."""
+        self._saved = asyncio.get_running_loop().create_future()
+        self.send(SaveState(run, index))
+        return await self._saved
+
+    async def quit(self) -> None:
+        """End it: politely, then not."""
+        self.send(Quit())
+        try:
+            await asyncio.wait_for(self._dead.wait(), QUIT_TIMEOUT_S)
+        except TimeoutError:
+            self.kill()
+            await self._dead.wait()
+
+    def kill(self) -> None:
+        """End the process at once."""
+        if self._process is not None:
+            self._process.kill()
+
+    def _listen(self, loop: asyncio.AbstractEventLoop, connection: Connection) -> None:
+        try:
+            while True:
+                report = connection.recv()
+                loop.call_soon_threadsafe(self._hear, report)
+        except (EOFError, OSError):
+            pass
+        if self._process is not None:
+            self._process.join()
+        connection.close()
+        if not loop.is_closed():
+            loop.call_soon_threadsafe(self._end)
+
+    def _hear(self, report: Report) -> None:
+        match report:
+            case Ready():
+                self.devices = report.devices
+                self._ready.set()
+            case CaseLoaded():
+                if self._loaded is not None and not self._loaded.done():
+                    self._loaded.set_result(report)
+            case CaseRefused():
+                if self._loaded is not None and not self._loaded.done():
+                    self._loaded.set_exception(RunError(report.message))
+            case StateSaved():
+                if self._saved is not None and not self._saved.done():
+                    self._saved.set_result(report.ok)
+            case _:
+                self._on_report(self, report)
+
+    def _end(self) -> None:
+        self._dead.set()
+        gone = RunError("the worker process ended unexpectedly")
+        if self._loaded is not None and not self._loaded.done():
+            self._loaded.set_exception(gone)
+        if self._saved is not None and not self._saved.done():
+            self._saved.set_result(False)
+        self._on_death(self)

@@ -1,0 +1,224 @@
+"""What the web process and a worker say to each other through their pipe.
+
+Commands go to the worker, reports come back. Both ends are this program, so plain pickled values are enough.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from solver_service.runs.case_facts import CaseFacts
+from solver_service.runs.lineage import Leg
+from solver_service.store import CheckpointRecord, FrameRecord
+
+
+@dataclass(frozen=True)
+class WorkerSettings:
+    """What a worker is told when it is born.
+
+    Attributes:
+        data_dir: the data folder.
+        epoch: epoch of the service; its rows are refused once another service has begun.
+        ring_bytes: memory for recent states [bytes].
+        checkpoint_interval_s: wall time between checkpoints on disk [s].
+        threads: solver threads on the CPU; None for all cores.
+        device: device whose kernels are loaded ahead.
+    """
+
+    data_dir: Path
+    epoch: int
+    ring_bytes: int
+    checkpoint_interval_s: float
+    threads: int | None
+    device: str
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """Load a case and keep it; answered by CaseLoaded or CaseRefused."""
+
+    case: str
+    device: str
+
+
+@dataclass(frozen=True)
+class Begin:
+    """Compute this run now, whatever was computed before (which stays resumable).
+
+    Attributes:
+        run: the run; the last leg of its lineage.
+        case: case to load if it is not the one at hand.
+        case_fingerprint: what the case must still be.
+        device: where to compute.
+        legs: the lineage.
+        output_interval: time between frames [s].
+        last_index: index of the last frame.
+        stored_frames: frames of this run with an index below this are stored already.
+        paused: bring the run to its first frame only and wait.
+    """
+
+    run: str
+    case: str
+    case_fingerprint: str
+    device: str
+    legs: tuple[Leg, ...]
+    output_interval: float
+    last_index: int
+    stored_frames: int
+    paused: bool = False
+
+
+@dataclass(frozen=True)
+class Pause:
+    """Stop between two steps, checkpoint, wait. `final` runs are not resumed and need no checkpoint."""
+
+    run: str
+    final: bool = False
+
+
+@dataclass(frozen=True)
+class SaveState:
+    """Put the state of a lineage at a frame on disk for another worker; answered by StateSaved."""
+
+    run: str
+    index: int
+
+
+@dataclass(frozen=True)
+class Quit:
+    """Checkpoint what is running and end."""
+
+
+Command = LoadCase | Begin | Pause | SaveState | Quit
+
+
+@dataclass(frozen=True)
+class Ready:
+    """The worker has loaded its kernels."""
+
+    pid: int
+    devices: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class CaseLoaded:
+    """The case is in memory.
+
+    Attributes:
+        case: its name.
+        title: its title.
+        fingerprint: hash of its bed and forcing.
+        facts: what the run tree keeps of it.
+        duration: simulated time it asks for [s].
+        output_interval: time between frames it asks for [s].
+        device: the device that computes.
+    """
+
+    case: str
+    title: str
+    fingerprint: str
+    facts: CaseFacts
+    duration: float
+    output_interval: float
+    device: str
+
+
+@dataclass(frozen=True)
+class CaseRefused:
+    """The case cannot be computed."""
+
+    case: str
+    message: str
+
+
+@dataclass(frozen=True)
+class Running:
+    """The state is at hand and the run computes."""
+
+    run: str
+
+
+@dataclass(frozen=True)
+class FrameStored:
+    """A frame has its row.
+
+    Attributes:
+        frame: the row.
+        waited_s: how long the solver waited to hand the frame over [s].
+        stored_s: from the hand-over to the row [s].
+    """
+
+    frame: FrameRecord
+    waited_s: float
+    stored_s: float
+
+
+@dataclass(frozen=True)
+class CheckpointStored:
+    """A checkpoint has its row."""
+
+    checkpoint: CheckpointRecord
+
+
+@dataclass(frozen=True)
+class StateSaved:
+    """The answer to SaveState; `ok` is False when the worker holds no such state any more."""
+
+    run: str
+    index: int
+    ok: bool
+
+
+@dataclass(frozen=True)
+class ProgressReport:
+    """Where the computation stands; the fields of the wire's `progress`."""
+
+    run: str
+    time: float
+    steps: int
+    dt: float
+    speed_x_real_time: float
+    wall_s: float
+    cell_steps_per_s: float
+    volume_error_relative: float
+    wet_cells: int
+
+
+@dataclass(frozen=True)
+class Paused:
+    """The run waits; `message` says why when nobody asked for it."""
+
+    run: str
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class Failed:
+    """The run cannot go on."""
+
+    run: str
+    message: str
+
+
+@dataclass(frozen=True)
+class Remark:
+    """Something a person should know although the run goes on."""
+
+    run: str
+    message: str
+
+
+Report = (
+    Ready
+    | CaseLoaded
+    | CaseRefused
+    | Running
+    | FrameStored
+    | CheckpointStored
+    | StateSaved
+    | ProgressReport
+    | Paused
+    | Failed
+    | Remark
+)

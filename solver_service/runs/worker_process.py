@@ -1,0 +1,58 @@
+"""The process that computes: started by spawn, one thread owns Warp, ended by Quit or by the end of its pipe."""
+
+from __future__ import annotations
+
+import gc
+import logging
+import multiprocessing
+import os
+import signal
+import threading
+from multiprocessing.connection import Connection
+
+from solver_service.runs.worker_messages import Ready, Report, WorkerSettings
+
+LOG = logging.getLogger(__name__)
+
+
+def worker_main(settings: WorkerSettings, connection: Connection) -> None:
+    """Body of the process.
+
+    Args:
+        settings: what the worker is told.
+        connection: its end of the pipe.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the service, which then tells its workers
+    send_lock = threading.Lock()
+
+    def report(message: Report) -> None:
+        with send_lock:
+            try:
+                connection.send(message)
+            except OSError:
+                LOG.info("the service is gone; nobody hears %s", type(message).__name__)
+
+    # the heavy imports are what a warm worker has behind it
+    from solver_service.numerics import device_names, warm_kernels
+    from solver_service.runs.inbox import Inbox
+    from solver_service.runs.run_loop import RunLoop
+
+    warm_kernels(settings.device)
+    gc.freeze()
+    loop = RunLoop(settings, Inbox(connection), report)
+    report(Ready(os.getpid(), tuple(device_names())))
+    loop.serve()
+
+
+def start_worker(settings: WorkerSettings) -> tuple[multiprocessing.process.BaseProcess, Connection]:
+    """Start a worker.
+
+    Returns:
+        The process and this side's end of the pipe.
+    """
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe()
+    process = context.Process(target=worker_main, args=(settings, theirs), name="fev-worker", daemon=True)
+    process.start()
+    theirs.close()
+    return process, ours

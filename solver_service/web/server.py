@@ -1,0 +1,153 @@
+"""Running the service: socket, ready line, signals, and an end within seconds whatever the clients do."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import signal
+import socket
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import uvicorn
+
+from protocol import limits
+from solver_service.errors import ServeError
+from solver_service.runs import RunRegistry
+from solver_service.web.app import create_app
+from solver_service.web.auth import Gate, load_token
+from solver_service.web.settings import ServiceSettings
+
+BACKLOG = 128
+GOING_AWAY = 1001
+GRACEFUL_SHUTDOWN_S = 2
+PING_INTERVAL_S = 20.0
+UNACKNOWLEDGED_MS = 15_000
+"""A peer that takes nothing for so long is dropped by the system (pings do not find it while a send waits)."""
+
+
+def run_service(settings: ServiceSettings) -> None:
+    """Run the service until it is told to stop.
+
+    Raises:
+        ServeError: the address is taken, or the token file cannot be used.
+        StoreError: the data folder is in use or cannot be used.
+        CaseError: an offered case cannot be read.
+    """
+    listener = _listen(settings.host, settings.port)
+    try:
+        registry = RunRegistry(
+            settings.data_dir,
+            cases=settings.cases,
+            device=settings.device,
+            threads=settings.threads,
+            ring_bytes=settings.ring_bytes,
+            checkpoint_interval_s=settings.checkpoint_interval_s,
+            spare_workers=settings.spare_workers,
+        )
+        gate = Gate(load_token(settings.token_path), settings.allowed_origins)
+    except BaseException:
+        listener.close()
+        raise
+    server = _Server(registry, gate, lambda: _tell_ready(settings, listener))
+    # uvicorn raises the signal that stopped it once more when it is done; it has done its work by then
+    signal.signal(signal.SIGTERM, lambda number, frame: None)
+    if settings.stop_with_stdin:
+        threading.Thread(target=server.stop_with_stdin, name="stdin-watch", daemon=True).start()
+    try:
+        asyncio.run(server.serve(sockets=[listener]))
+    except KeyboardInterrupt:
+        pass
+
+
+class _Server(uvicorn.Server):
+    """A uvicorn server that opens and closes the runs around its own life."""
+
+    def __init__(self, registry: RunRegistry, gate: Gate, on_ready: Callable[[], None]) -> None:
+        self._registry = registry
+        self._on_ready = on_ready
+        self._app = create_app(registry, gate)
+        super().__init__(
+            uvicorn.Config(
+                self._app,
+                ws="websockets-sansio",
+                ws_max_size=limits.INBOUND_MAX_BYTES,
+                ws_per_message_deflate=False,
+                ws_ping_interval=PING_INTERVAL_S,
+                ws_ping_timeout=PING_INTERVAL_S,
+                timeout_graceful_shutdown=GRACEFUL_SHUTDOWN_S,
+                lifespan="off",
+                access_log=False,
+                log_config=None,
+            )
+        )
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await self._registry.open()
+        await super().startup(sockets)
+        self._on_ready()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        for connection in tuple(self._app.state.connections):
+            connection.end(GOING_AWAY, "the service is ending")
+        await asyncio.gather(super().shutdown(sockets), self._registry.close())
+
+    def stop_with_stdin(self) -> None:
+        """Wait for the end of standard input, then stop."""
+        while sys.stdin.buffer.read(4096):
+            pass
+        self.should_exit = True
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    """A listening socket.
+
+    Raises:
+        ServeError: the address is taken or not ours.
+    """
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0][0]
+        listener = socket.create_server((host, port), family=family, backlog=BACKLOG)
+    except OSError as error:
+        raise ServeError(
+            f"cannot listen on {host} port {port}: {error.strerror or error}; "
+            "another service may run there, --port 0 takes a free one"
+        ) from error
+    if hasattr(socket, "TCP_USER_TIMEOUT"):
+        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNACKNOWLEDGED_MS)
+    return listener
+
+
+def _tell_ready(settings: ServiceSettings, listener: socket.socket) -> None:
+    host, port = listener.getsockname()[:2]
+    host = f"[{host}]" if ":" in host else host
+    line = json.dumps(
+        {
+            "event": "listening",
+            "url": f"ws://{host}:{port}/v1/stream",
+            "http": f"http://{host}:{port}",
+            "pid": os.getpid(),
+            "token_file": str(settings.token_path),
+            "data_dir": str(settings.data_dir),
+        }
+    )
+    if settings.ready_file is not None:
+        _write_whole(settings.ready_file, line + "\n")
+    print(line, flush=True)
+
+
+def _write_whole(path: Path, text: str) -> None:
+    """Write a file that a reader sees complete or not at all.
+
+    Raises:
+        ServeError: it cannot be written.
+    """
+    temporary = path.with_name(f"{path.name}.{os.getpid()}")
+    try:
+        temporary.write_text(text, encoding="utf-8")
+        temporary.replace(path)
+    except OSError as error:
+        raise ServeError(f"ready file {path} cannot be written: {error.strerror or error}") from error

@@ -1,0 +1,49 @@
+"""What an operator may choose about a service."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from solver_service.store import default_data_dir
+
+
+@dataclass(frozen=True)
+class ServiceSettings:
+    """One service.
+
+    Attributes:
+        host: address to listen on.
+        port: TCP port; 0 picks a free one, told in the ready line.
+        data_dir: folder of runs, frames and checkpoints; one service at a time.
+        token_file: file with the token; made with a random one (mode 600) where it does not exist. None: `token`
+            below the data folder.
+        ready_file: where the ready line is written as well, None for standard output only.
+        stop_with_stdin: end when standard input closes, so that a service never outlives the viewer that began it.
+        cases: cases offered beside the embedded ones and those of `FEV_DATA_HOME`: names or paths.
+        device: device of runs that ask for "auto".
+        threads: solver threads of a worker on the CPU; None for all cores.
+        allowed_origins: values of the Origin header that are served beside the own address; native viewers send none.
+        ring_bytes: memory in which a worker keeps recent states for Recalculate [bytes].
+        checkpoint_interval_s: wall time between checkpoints on disk [s].
+        spare_workers: warm workers that stand by.
+    """
+
+    host: str = "127.0.0.1"
+    port: int = 0
+    data_dir: Path = field(default_factory=default_data_dir)
+    token_file: Path | None = None
+    ready_file: Path | None = None
+    stop_with_stdin: bool = False
+    cases: tuple[str, ...] = ()
+    device: str = "auto"
+    threads: int | None = None
+    allowed_origins: tuple[str, ...] = ()
+    ring_bytes: int = 1 << 30
+    checkpoint_interval_s: float = 60.0
+    spare_workers: int = 1
+
+    @property
+    def token_path(self) -> Path:
+        """The token file."""
+        return self.token_file or self.data_dir / "token"
