@@ -2,7 +2,7 @@
 
 The file is a chain of big-endian Fortran records, each between two 4-byte lengths: title, number of
 variables, their names (32 bytes each), ten integers (the last 1: a date record follows), NELEM
-NPOIN NDP 1, triangles (1-based), boundary index, x, y, and for each time the time and one record for each variable.
+NPOIN NDP 1, triangles (1-based), boundary index, x, y, and for each time the time and each variable.
 """
 
 from __future__ import annotations
