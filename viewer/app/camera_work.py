@@ -48,6 +48,7 @@ class CameraWork:
         self._motion = OrbitMotion()
         self._frame = heightfield.frame.exaggerated(exaggeration)
         self.aspect = aspect
+        self._is_untouched = True
         self.camera = self._overview(START_ELEVATION)
 
     @property
@@ -59,6 +60,13 @@ class CameraWork:
     def frame(self) -> WorldFrame:
         """The map between grid coordinates and the world of the picture."""
         return self._frame
+
+    def set_aspect(self, aspect: float) -> None:
+        """Follow the shape of the picture; a view that nobody has changed yet shows all the terrain."""
+        if abs(aspect - self.aspect) > 1e-3 and self._is_untouched:
+            self.aspect = aspect
+            self.camera = self._overview(START_ELEVATION)
+        self.aspect = aspect
 
     def set_exaggeration(self, exaggeration: float) -> None:
         """Follow a change of the vertical exaggeration: the target keeps its place on the ground."""
@@ -113,6 +121,7 @@ class CameraWork:
                 self._motion.fly_to(self.camera, self._overview(TOP_ELEVATION))
             case _:
                 return False
+        self._is_untouched = False
         return True
 
     def _fly_to(self, command: FlyTo) -> None:

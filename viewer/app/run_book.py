@@ -31,6 +31,9 @@ class RunBook:
 
     def note_run(self, info: protocol.RunInfo) -> None:
         """Take over what is new about a run."""
+        known = self.runs.get(info.run)
+        if known is not None and known.frame_count > info.frame_count:
+            info = msgspec.structs.replace(info, frame_count=known.frame_count)
         self.runs[info.run] = info
 
     def note_frame_count(self, run: str, index: int) -> None:

@@ -182,4 +182,4 @@ class ServiceDesk:
         self.book.note_run(info)
         if info.status == "failed" and info.message and (before is None or before.status != "failed"):
             self._listener.say(f"the run failed: {info.message}")
-        self._listener.run_changed(info)
+        self._listener.run_changed(self.book.runs[info.run])

@@ -10,10 +10,11 @@ from viewer.app.recalculation import Recalculation
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
 from viewer.app.water_feed import WaterFeed
+from viewer.net import FrameLoader
 from viewer.view_status import PointReadout, ViewStatus
 from viewer.world import PlaybackClock, probe
 
-__all__ = ["point_readout", "program_status", "run_status"]
+__all__ = ["depth_record", "point_readout", "program_status", "run_status"]
 
 
 def program_status(desk: ServiceDesk, clock: PlaybackClock, drawing: EditDrawing, message: str) -> ViewStatus:
@@ -61,6 +62,13 @@ def run_status(
         speed_x_real_time=None if progress is None else progress.speed_x_real_time,
         volume_error_relative=None if progress is None else progress.volume_error_relative,
     )
+
+
+def depth_record(shown: ShownRun, loader: FrameLoader) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return times [s] and depths [m] at the traced point in the frames of the shown run read so far."""
+    traced = loader.traced()
+    read = [traced[key] for index in shown.timeline.indices if (key := shown.frame_key(index)) in traced]
+    return tuple(time for time, _ in read), tuple(depth for _, depth in read)
 
 
 def point_readout(shown: ShownRun, feed: WaterFeed, at: tuple[float, float] | None) -> PointReadout | None:

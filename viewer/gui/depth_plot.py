@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pyqtgraph as pg
-from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from viewer.gui.status_line import readout_text
 from viewer.gui.theme import ACCENT, BRANCH
@@ -23,6 +23,7 @@ class DepthPlot(QWidget):
         self.plot = pg.PlotWidget(background=None)
         self.plot.setAccessibleName("Depth over time at the clicked point")
         self.plot.setMinimumHeight(120)
+        self.plot.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Expanding)
         self.plot.setMenuEnabled(False)
         self.plot.setMouseEnabled(False, False)
         self.plot.hideButtons()
@@ -44,6 +45,8 @@ class DepthPlot(QWidget):
             place = f"x {status.probe.x:.0f}, y {status.probe.y:.0f}: "
             self.caption.setText(place + readout_text(status.probe))
         self.now.setPos(status.time / 60.0)
+        if status.duration > 0.0:
+            self.plot.setXRange(0.0, status.duration / 60.0, padding=0.02)
         if status.depth_record != self._shown:
             self._shown = status.depth_record
             times, depths = status.depth_record

@@ -34,6 +34,7 @@ from viewer.view_status import ViewStatus
 __all__ = ["MainWindow"]
 
 TICK_MS = 16
+DOCK_WIDTH = 340
 EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0)
 TAUS_PX = (0.5, 1.0, 2.0, 4.0, 8.0)
 CONTOUR_INTERVALS_M = (0.0, 5.0, 10.0, 20.0, 50.0)
@@ -78,6 +79,8 @@ class MainWindow(QMainWindow):
             self._dock("Terrain edits", self.edit_panel, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Depth at a point", self.depth_plot, Qt.DockWidgetArea.RightDockWidgetArea),
         ]
+        self.resizeDocks(self.docks, [DOCK_WIDTH] * len(self.docks), Qt.Orientation.Horizontal)
+        self.resizeDocks(self.docks, [330, 360, 190], Qt.Orientation.Vertical)
         self._make_menus()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.tick)

@@ -72,6 +72,9 @@ class FrameLoader:
         self._ready: OrderedDict[FrameKey, DecodedWater] = OrderedDict()
         self._broken: dict[FrameKey, str] = {}
         self._wanted: list[FrameKey] = []
+        self._traced_cell = (0, 0)
+        self._trace_keys: list[FrameKey] = []
+        self._traced: dict[FrameKey, tuple[float, float]] = {}
         self._stopped = False
         self._changed = threading.Condition()
         self._thread = threading.Thread(target=self._decode_wanted, name="fev-frame-loader", daemon=True)
@@ -142,6 +145,20 @@ class FrameLoader:
         with self._changed:
             return self._changed.wait_for(lambda: all(key in self._ready for key in keys), timeout_s)
 
+    def trace(self, row: int, col: int, keys: Sequence[FrameKey]) -> None:
+        """Read the depth of one cell in the frames `keys`, whenever nothing more urgent is to be decoded."""
+        with self._changed:
+            if (row, col) != self._traced_cell:
+                self._traced_cell = (row, col)
+                self._traced.clear()
+            self._trace_keys = [key for key in keys if key not in self._traced]
+            self._changed.notify_all()
+
+    def traced(self) -> dict[FrameKey, tuple[float, float]]:
+        """Return time [s] and depth [m] of the traced cell in each frame that has been read so far."""
+        with self._changed:
+            return dict(self._traced)
+
     def missing_for(self, key: FrameKey) -> int | None:
         """Return the index that must be fetched before `key` can be shown, None when all is at hand."""
         with self._changed:
@@ -159,39 +176,52 @@ class FrameLoader:
     def _decode_wanted(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: self._stopped or self._next_wanted() is not None)
+                self._changed.wait_for(lambda: self._stopped or self._next() is not None)
                 if self._stopped:
                     return
-                key = self._next_wanted()
+                key = self._next()
                 assert key is not None
+                is_wanted, cell = key in self._wanted, self._traced_cell
                 run, index = key
                 cache = self._packed[run]
                 leaned_on = cache.key_of(index)
                 packed = [cache.get(at) for at in dict.fromkeys((leaned_on, index)) if at is not None]
                 decoder = self._decoders[run]
-            water: DecodedWater | str
+            reason = ""
+            decoded: protocol.DecodedFrame | None = None
             try:
-                water = _decode(decoder, [data for data in packed if data is not None])
+                decoded = _decode(decoder, [data for data in packed if data is not None])
+                water = _water(decoded) if is_wanted else None
             except protocol.ProtocolError as error:
-                water = str(error)
+                reason, water = str(error), None
             with self._changed:
-                if isinstance(water, str):
-                    self._broken[key] = water
-                else:
+                if decoded is None:
+                    self._broken[key] = reason
+                elif cell == self._traced_cell and cell < decoded.q.shape:
+                    self._traced[key] = (decoded.time, float(decoded.q[cell]) * decoded.scale)
+                if water is not None:
                     self._keep(key, water)
                 self._changed.notify_all()
             if self._woken is not None:
                 self._woken()
 
-    def _next_wanted(self) -> FrameKey | None:
+    def _next(self) -> FrameKey | None:
+        """Return the frame to decode next: the most urgent of those wanted, else one to be traced."""
         for key in self._wanted:
-            cache = self._packed.get(key[0])
-            if cache is None or key[1] not in cache or key in self._ready or key in self._broken:
-                continue
-            leaned_on = cache.key_of(key[1])
-            if leaned_on is not None and leaned_on in cache:
+            if key not in self._ready and self._can_decode(key):
                 return key
+        while self._trace_keys:
+            if self._trace_keys[0] not in self._traced and self._can_decode(self._trace_keys[0]):
+                return self._trace_keys[0]
+            del self._trace_keys[0]
         return None
+
+    def _can_decode(self, key: FrameKey) -> bool:
+        cache = self._packed.get(key[0])
+        if cache is None or key[1] not in cache or key in self._broken:
+            return False
+        leaned_on = cache.key_of(key[1])
+        return leaned_on is not None and leaned_on in cache
 
     def _keep(self, key: FrameKey, water: DecodedWater) -> None:
         self._ready[key] = water
@@ -206,10 +236,13 @@ class FrameLoader:
             del self._ready[oldest]
 
 
-def _decode(decoder: protocol.FrameDecoder, packed: Sequence[bytes]) -> DecodedWater:
+def _decode(decoder: protocol.FrameDecoder, packed: Sequence[bytes]) -> protocol.DecodedFrame:
     *leaned_on, wanted = (protocol.unpack_frame(data) for data in packed)
     for key_frame in leaned_on:
         if not decoder.has_key(key_frame.run, key_frame.index):
             decoder.decode(key_frame)
-    decoded = decoder.decode(wanted)
+    return decoder.decode(wanted)
+
+
+def _water(decoded: protocol.DecodedFrame) -> DecodedWater:
     return DecodedWater(decoded.run, decoded.index, decoded.time, decoded.revision, decoded.h, decoded.states)
