@@ -44,9 +44,8 @@ def test_a_python_file_is_short_enough_to_be_read_at_once() -> None:
 def test_code_is_ascii_with_unix_line_ends() -> None:
     for path in PYTHON_FILES:
         text = path.read_bytes()
-        assert text.isascii(), (
-            f"{relative(path)}: byte {next(i for i, byte in enumerate(text) if byte > 127)}"
-        )
+        # Tests may name people and places as they are spelt.
+        assert text.isascii() or relative(path).startswith("tests/"), relative(path)
         assert b"\r" not in text, relative(path)
         assert not text or text.endswith(b"\n"), relative(path)
 
