@@ -38,6 +38,4 @@ def decompress(packed: bytes, raw_size: int, max_size: int) -> bytes:
         )
     except zstandard.ZstdError as error:
         raise FrameError(f"A payload is not valid zstd: {error}.") from error
-    if len(raw) != raw_size:
-        raise FrameError(f"A payload declares {raw_size} bytes and holds {len(raw)}.")
     return raw

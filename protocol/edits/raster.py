@@ -88,10 +88,8 @@ def _rasterise_line(edit: EditLine, grid: GridGeometry) -> tuple[Int32Array, Int
     width = round(min(edit.width / grid.dx, 2.0 * (grid.nrows + grid.ncols)) * SUBCELLS)
     ax, ay, bx, by = x[:-1], y[:-1], x[1:], y[1:]
     thick = _capsule_cells(edit, grid, width, ax, ay, bx, by)
-    thin = _bresenham_cells(ax, ay, bx, by)
+    thin = _bresenham_cells(grid, ax, ay, bx, by)
     segment, row, col = (np.concatenate(pair) for pair in zip(thick, thin, strict=True))
-    inside = (row >= 0) & (row < grid.nrows) & (col >= 0) & (col < grid.ncols)
-    segment, row, col = segment[inside], row[inside], col[inside]
 
     px, py = col * SUBCELLS + HALF - ax[segment], row * SUBCELLS + HALF - ay[segment]
     dx, dy = (bx - ax)[segment], (by - ay)[segment]
@@ -161,10 +159,14 @@ def _capsule_cells(
 
 
 def _bresenham_cells(
-    ax: Int64Array, ay: Int64Array, bx: Int64Array, by: Int64Array
+    grid: GridGeometry, ax: Int64Array, ay: Int64Array, bx: Int64Array, by: Int64Array
 ) -> tuple[Int64Array, Int64Array, Int64Array]:
-    """Segment, row and column of the Bresenham cells from the cell of A to the cell of B."""
-    col0, row0, col1, row1 = (value // SUBCELLS for value in (ax, ay, bx, by))
+    """Segment, row and column of the Bresenham cells from the cell of A to the cell of B.
+
+    A vertex on the northern or eastern edge of the grid is in the last row or column.
+    """
+    col0, col1 = (np.minimum(x // SUBCELLS, grid.ncols - 1) for x in (ax, bx))
+    row0, row1 = (np.minimum(y // SUBCELLS, grid.nrows - 1) for y in (ay, by))
     dcol, drow = col1 - col0, row1 - row0
     steps = np.maximum(np.abs(dcol), np.abs(drow))
     segment, i = _ranges(steps + 1)

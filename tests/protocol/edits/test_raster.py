@@ -32,8 +32,9 @@ def units(x: float, y: float) -> tuple[int, int]:
 
 def bresenham_cells(a: tuple[int, int], b: tuple[int, int]) -> set[tuple[int, int]]:
     """The textbook loop: one step along the longer side, and one aside when the error has grown to a half."""
-    col, row = a[0] // 1024, a[1] // 1024
-    col_end, row_end = b[0] // 1024, b[1] // 1024
+    (col, row), (col_end, row_end) = (
+        (min(x // 1024, GRID.ncols - 1), min(y // 1024, GRID.nrows - 1)) for x, y in (a, b)
+    )
     dcol, drow = abs(col_end - col), abs(row_end - row)
     col_step, row_step = (1 if col_end > col else -1), (1 if row_end > row else -1)
     cells = {(row, col)}
