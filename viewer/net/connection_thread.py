@@ -8,6 +8,7 @@ control.
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import queue
 import threading
@@ -163,10 +164,14 @@ class ConnectionThread:
             _Refused: the service will not have us, and trying again would not help.
         """
         self._tell(ConnectionState("connecting", f"connecting to {self.url}", self._back_off.attempt))
-        try:
-            socket = self._open_socket()
-        except (OSError, TimeoutError) as error:
-            return f"no connection to {self.url}: {_cause(error)}"
+        with contextlib.ExitStack() as stack:
+            try:
+                socket = self._open_socket(stack)
+            except (OSError, TimeoutError) as error:
+                return f"no connection to {self.url}: {_cause(error)}"
+            return self._converse(socket)
+
+    def _converse(self, socket: ClientConnection) -> str:
         self._socket = socket
         session = protocol.ClientSession(self._client, self._token)
         self._outgoing = queue.Queue(OUTGOING_LIMIT)
@@ -187,20 +192,22 @@ class ConnectionThread:
             writer.join(CLOSE_TIMEOUT_S)
             self._socket = None
 
-    def _open_socket(self) -> ClientConnection:
+    def _open_socket(self, stack: contextlib.ExitStack) -> ClientConnection:
         headers = {} if self._token is None else {"Authorization": f"Bearer {self._token}"}
         try:
             host = urllib.parse.urlsplit(self.url).hostname or ""
-            socket = connect(
-                self.url,
-                additional_headers=headers,
-                subprotocols=[Subprotocol(protocol.PROTOCOL_VERSION)],
-                compression=None,
-                max_size=protocol.limits.OUTBOUND_MAX_BYTES,
-                open_timeout=OPEN_TIMEOUT_S,
-                close_timeout=CLOSE_TIMEOUT_S,
-                ping_interval=PING_INTERVAL_S,
-                proxy=None if host in LOOPBACK_HOSTS else True,
+            socket = stack.enter_context(
+                connect(
+                    self.url,
+                    additional_headers=headers,
+                    subprotocols=[Subprotocol(protocol.PROTOCOL_VERSION)],
+                    compression=None,
+                    max_size=protocol.limits.OUTBOUND_MAX_BYTES,
+                    open_timeout=OPEN_TIMEOUT_S,
+                    close_timeout=CLOSE_TIMEOUT_S,
+                    ping_interval=PING_INTERVAL_S,
+                    proxy=None if host in LOOPBACK_HOSTS else True,
+                )
             )
         except (InvalidURI, ValueError) as error:
             raise _Refused(
@@ -218,7 +225,6 @@ class ConnectionThread:
         except InvalidHandshake as error:
             raise _Refused(f"{self.url} is not a solver service that speaks fev.v1: {error}") from None
         if socket.subprotocol != protocol.PROTOCOL_VERSION:
-            socket.close()
             raise _Refused(f"{self.url} does not speak {protocol.PROTOCOL_VERSION}")
         return socket
 
