@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import logging
+
 from protocol import CaseSummary
-from solver_service.errors import RunError
+from solver_service.errors import RunError, ServiceError
 from solver_service.scenario import case_summary, list_cases
+
+LOG = logging.getLogger(__name__)
 
 
 class CaseCatalogue:
@@ -21,10 +25,18 @@ class CaseCatalogue:
         """
         self._sources: dict[str, str] = {}
         self._summaries: dict[str, CaseSummary] = {}
-        for source in (*list_cases(), *extra):
-            summary = case_summary(source)
-            self._sources[summary.name] = source
-            self._summaries[summary.name] = summary
+        for source in list_cases():
+            try:
+                self._add(source)
+            except ServiceError as error:  # one bad case does not keep the others from being served
+                LOG.warning("case %s is not offered: %s", source, error)
+        for source in extra:
+            self._add(source)
+
+    def _add(self, source: str) -> None:
+        summary = case_summary(source)
+        self._sources[summary.name] = source
+        self._summaries[summary.name] = summary
 
     @property
     def summaries(self) -> tuple[CaseSummary, ...]:
@@ -38,5 +50,7 @@ class CaseCatalogue:
             RunError: the case is not offered.
         """
         if name not in self._sources:
-            raise RunError(f"there is no case {name!r}; there are {', '.join(sorted(self._sources)) or 'none'}")
+            raise RunError(
+                f"there is no case {name!r}; there are {', '.join(sorted(self._sources)) or 'none'}"
+            )
         return self._sources[name]

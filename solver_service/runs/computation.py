@@ -53,6 +53,7 @@ class Computation:
             depth_wet=self.depth_wet,
             source=self.case.source,
             licence=self.case.licence,
+            start_time=self.case.start_time,
         )
 
     @property
@@ -108,7 +109,7 @@ def fingerprint(case: Case) -> str:
 def _feed(digest: hashlib._Hash, value: object) -> None:
     if isinstance(value, np.ndarray):
         digest.update(f"{value.dtype.str}{value.shape}".encode())
-        digest.update(np.ascontiguousarray(value).reshape(-1).view(np.uint8))
+        digest.update(np.ascontiguousarray(value).reshape(-1).view(np.uint8).data)
     elif isinstance(value, list | tuple):
         for item in value:
             _feed(digest, item)

@@ -1,4 +1,4 @@
-"""Edits as the store keeps them: msgpack of the wire's own records, so that what was drawn stays what it was."""
+"""Edits as the store keeps them: msgpack of the wire's own records."""
 
 from __future__ import annotations
 

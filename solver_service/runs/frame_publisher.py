@@ -1,7 +1,8 @@
 """From the solver to the store: encode, append, commit and tell, on a thread of its own.
 
-The solver hands over (q, states) and goes on; it waits only when the disk is so slow that the queue is full. When the
-store fails (a full disk) nothing is lost: the frame stays in hand, the run is told to pause, and `retry` tries again.
+The solver hands over (q, states) and goes on; it waits only when the disk is so slow that the queue is full.
+When the store fails (a full disk) nothing is lost: the frame stays in hand, the run is told to pause, and
+`retry` tries again.
 """
 
 from __future__ import annotations
@@ -132,18 +133,21 @@ class FramePublisher:
                 )
             except StoreError as error:
                 self._retry.clear()
-                if self._closing:
+                if self._is_closing():
                     return
                 self._trouble(frame.run, str(error))
                 self._retry.wait()
-                if self._closing:
+                if self._is_closing():
                     return
             else:
                 self._report(FrameStored(record, waited, clock.perf_counter() - begun))
                 return
 
+    def _is_closing(self) -> bool:
+        return self._closing
+
     def _tools(self, frame: QuantisedFrame, database: RunDatabase) -> tuple[FrameEncoder, FrameWriter]:
-        """Encoder and writer of the run; a run that is taken up begins with a key frame in a segment of its own."""
+        """Encoder and writer; a run that is taken up begins with a key frame in its own segment."""
         wanted = (frame.run, frame.q.shape)
         if self._encoder is None or self._writer is None or self._encoder_of != wanted:
             if self._writer is not None:

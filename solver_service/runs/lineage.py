@@ -54,8 +54,8 @@ def owner(legs: tuple[Leg, ...], index: int) -> Leg:
 def branch_point(legs: tuple[Leg, ...], index: int) -> Leg:
     """The leg whose state a branch at `index` takes: the last one that begins before it.
 
-    At the very first frame of a run that is a branch itself this is its parent, so that water which the first edit
-    displaced is not displaced a second time, and an edit that was taken back leaves no trace.
+    At the very first frame of a run that is a branch itself this is its parent, so that water which the first
+    edit displaced is not displaced a second time, and an edit that was taken back leaves no trace.
 
     Args:
         legs: a lineage.

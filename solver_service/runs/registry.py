@@ -90,13 +90,11 @@ class RunRegistry:
         self.pool: WorkerPool
 
     async def open(self) -> None:
-        """Take over the store: fence off earlier services, mend what a crash left, list the runs, warm a worker."""
+        """Take over the store: fence off earlier services, mend what a crash left, warm a worker."""
         self._folder.remove_unfinished()
         epoch = await self._store.call(RunDatabase.begin_epoch)
         active = tuple(status.value for status in ACTIVE)
-        await self._store.call(
-            RunDatabase.interrupt_active, active, RunStatus.PAUSED.value, INTERRUPTED
-        )
+        await self._store.call(RunDatabase.interrupt_active, active, RunStatus.PAUSED.value, INTERRUPTED)
         for record in await self._store.call(RunDatabase.runs):
             self.tree.add(await self._store.call(_load_run, self._folder, record))
         self.pool = WorkerPool(
@@ -196,7 +194,7 @@ class RunRegistry:
             self._pause(run)
 
     async def resume(self, name: str) -> None:
-        """Go on with a paused run, or with one that failed, from where it stood or from its last checkpoint."""
+        """Go on with a paused or failed run, from where it stood or from its last checkpoint."""
         run = self.tree.get(name)
         async with run.lock:
             check_move(name, run.status, RunStatus.STARTING)
@@ -276,11 +274,13 @@ class RunRegistry:
         async with run.lock:
             if self.tree.frame(name, index) is None:
                 raise RunError(
-                    f"frame {index} of run {name} is not computed yet; 0 to {run.frame_count - 1} can be branched"
+                    f"frame {index} of run {name} is not computed yet; "
+                    f"0 to {run.frame_count - 1} can be branched"
                 )
             if revision != run.edit_log.revision:
                 raise RunError(
-                    f"the edits of run {name} are at revision {run.edit_log.revision}, not {revision}; look again"
+                    f"the edits of run {name} are at revision {run.edit_log.revision}, not {revision}; "
+                    "look at them again"
                 )
             parent = self.tree.branch_parent(name, index)
             record = replace(
@@ -364,5 +364,3 @@ def _load_run(database: RunDatabase, folder: DataFolder, record: RunRecord) -> R
     run = _fresh(record, tuple(database.edit_events(record.run)))
     run.frames = database.frames(record.run)
     return run
-
-

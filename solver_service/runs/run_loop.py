@@ -1,8 +1,8 @@
 """The solver thread of a worker: obey commands between two steps, compute frames, hand them over.
 
-A run is brought to where it goes on along its lineage: the newest state at hand (memory, disk, else time 0), exact
-replay to the next branch point, the bed of the next leg, and so on until its own leg; from there every output time
-becomes a frame. Frames that are stored already are computed again but not stored again.
+A run is brought to where it goes on along its lineage: the newest state at hand (memory, disk, else time 0),
+exact replay to the next branch point, the bed of the next leg, and so on until its own leg; from there every
+output time becomes a frame. Frames that are stored already are computed again but not stored again.
 """
 
 from __future__ import annotations
@@ -153,7 +153,9 @@ class RunLoop:
         """The deepest leg of which a state is at hand, and the newest such state that is not too late."""
         for position in range(len(begin.legs) - 1, -1, -1):
             own = position == len(begin.legs) - 1
-            until = (begin.stored_frames if own else begin.legs[position + 1].first_index) * begin.output_interval
+            until = (
+                begin.stored_frames if own else begin.legs[position + 1].first_index
+            ) * begin.output_interval
             run = begin.legs[position].run
             state = self._keeper.ring.latest(run, until)
             if state is None:
@@ -170,7 +172,7 @@ class RunLoop:
         assert course is not None
         assert computation is not None
         begin = course.begin
-        replaying = course.position < len(begin.legs) - 1
+        replaying = not course.is_own
         index = begin.legs[course.position + 1].first_index if replaying else course.next_index
         if not computation.advance_to(index * begin.output_interval, self._should_stop):
             return
@@ -224,7 +226,7 @@ class RunLoop:
         if pause.final:
             self._course = None
             return
-        if course.computing and self._computation is not None and course.position == len(course.begin.legs) - 1:
+        if course.computing and self._computation is not None and course.is_own:
             self._keeper.checkpoint(pause.run, self._computation.state())
         course.computing = False
         self._report(Paused(pause.run))
@@ -232,11 +234,10 @@ class RunLoop:
     def _leave(self) -> None:
         """Make sure that what is computed now can be taken up again elsewhere."""
         course, computation = self._course, self._computation
-        if course is not None and computation is not None and course.computing:
-            if course.position == len(course.begin.legs) - 1:
-                state = computation.state()
-                self._keeper.remember(course.begin.run, state)
-                self._keeper.checkpoint(course.begin.run, state)
+        if course is not None and computation is not None and course.computing and course.is_own:
+            state = computation.state()
+            self._keeper.remember(course.begin.run, state)
+            self._keeper.checkpoint(course.begin.run, state)
         self._course = None
 
     def _save_state(self, command: SaveState) -> None:
@@ -329,6 +330,11 @@ class _Course:
     steps_before: int = 0
     volume_error: float = 0.0
     wet_cells: int = 0
+
+    @property
+    def is_own(self) -> bool:
+        """Whether the leg that is computed is the run's own."""
+        return self.position == len(self.begin.legs) - 1
 
 
 def _next_index(begin: Begin, position: int, time: float) -> int:

@@ -22,9 +22,7 @@ LEGAL_MOVES: dict[RunStatus, frozenset[RunStatus]] = {
     RunStatus.STARTING: frozenset(
         {RunStatus.RUNNING, RunStatus.PAUSED, RunStatus.FINISHED, RunStatus.STOPPED, RunStatus.FAILED}
     ),
-    RunStatus.RUNNING: frozenset(
-        {RunStatus.PAUSED, RunStatus.FINISHED, RunStatus.STOPPED, RunStatus.FAILED}
-    ),
+    RunStatus.RUNNING: frozenset({RunStatus.PAUSED, RunStatus.FINISHED, RunStatus.STOPPED, RunStatus.FAILED}),
     # paused -> finished: the last frame was on its way to the disk when the pause was asked for
     RunStatus.PAUSED: frozenset(
         {RunStatus.STARTING, RunStatus.FINISHED, RunStatus.STOPPED, RunStatus.FAILED}

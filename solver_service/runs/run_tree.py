@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from protocol import EditLog, LineageEntry, RunInfo
@@ -74,7 +74,7 @@ class RunTree:
         """Take a run in; its parent must be there."""
         self._runs[run.run] = run
 
-    def __iter__(self) -> Iterable[Run]:
+    def __iter__(self) -> Iterator[Run]:
         """Runs in the order in which they were made."""
         return iter(self._runs.values())
 
@@ -101,7 +101,7 @@ class RunTree:
 
     def frame(self, name: str, index: int) -> FrameRecord | None:
         """The row of a frame of a run or of its past; None when it is not stored (yet)."""
-        if not 0 <= index:
+        if not index >= 0:
             return None
         holder = self.get(owner(self.legs(name), index).run)
         position = index - holder.first_index

@@ -1,7 +1,8 @@
 """Recent full-precision states in memory, so that Recalculate need not go to the disk.
 
-States are packed (zstd, level 1) by a background thread; until then they count at their full size. When the budget is
-passed, the state goes whose loss leaves the smallest gap in the time line of its run; the newest of a run stays.
+States are packed (zstd, level 1) by a background thread; until then they count at their full size. When the
+budget is passed, the state goes whose loss leaves the smallest gap in the time line of its run; the newest of
+a run stays.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ class StateRing:
             return sorted(entry.time for entry in self._entries if entry.run == run)
 
     def add(self, run: str, state: StoredState) -> None:
-        """Keep a state; its arrays must not change afterwards. A state of the same run and time is replaced."""
+        """Keep a state in place of an equal one; its arrays must not change afterwards."""
         size = sum(array.nbytes for array in state.arrays.values())
         with self._lock:
             self._entries = [e for e in self._entries if (e.run, e.time) != (run, state.time)]
@@ -111,7 +112,7 @@ class StateRing:
             self._entries.remove(min(self._entries[:-1], key=self._gap_without))
 
     def _gap_without(self, entry: _Entry) -> float:
-        """The gap that the time line of its run would have without this entry; ends count as twice their gap."""
+        """Gap in the time line of its run without this entry; an end counts as twice its gap."""
         times = [e.time for e in self._entries if e.run == entry.run]
         before = max((t for t in times if t < entry.time), default=None)
         after = min((t for t in times if t > entry.time), default=None)
@@ -125,7 +126,9 @@ class StateRing:
 
 
 def _pack(array: NDArray[Any]) -> _PackedArray:
-    content = zstandard.ZstdCompressor(level=1).compress(np.ascontiguousarray(array).reshape(-1).view(np.uint8))
+    content = zstandard.ZstdCompressor(level=1).compress(
+        np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
+    )
     return _PackedArray(array.dtype.str, array.shape, content)
 
 

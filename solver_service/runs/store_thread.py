@@ -1,4 +1,4 @@
-"""The store of the web process: one thread that owns the connection, so that the event loop never waits for a disk."""
+"""The store on a thread of its own, so that the event loop never waits for a disk."""
 
 from __future__ import annotations
 
@@ -28,7 +28,9 @@ class StoreThread:
         self._executor = ThreadPoolExecutor(1, thread_name_prefix="store")
         self._database = self._executor.submit(RunDatabase, folder.database).result()
 
-    async def call(self, method: Callable[Concatenate[RunDatabase, P], T], *args: P.args, **kwargs: P.kwargs) -> T:
+    async def call(
+        self, method: Callable[Concatenate[RunDatabase, P], T], *args: P.args, **kwargs: P.kwargs
+    ) -> T:
         """Call a method and wait for what it gives.
 
         Raises:
@@ -37,7 +39,9 @@ class StoreThread:
         future = self._executor.submit(method, self._database, *args, **kwargs)
         return await asyncio.wrap_future(future)
 
-    def later(self, method: Callable[Concatenate[RunDatabase, P], T], *args: P.args, **kwargs: P.kwargs) -> None:
+    def later(
+        self, method: Callable[Concatenate[RunDatabase, P], T], *args: P.args, **kwargs: P.kwargs
+    ) -> None:
         """Call a method in its turn without waiting; a failure is logged."""
         self._executor.submit(method, self._database, *args, **kwargs).add_done_callback(_log_failure)
 

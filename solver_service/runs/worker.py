@@ -1,4 +1,4 @@
-"""A worker as the event loop of the service sees it: send commands, hear reports, notice its death at once."""
+"""A worker as the event loop sees it: send commands, hear reports, notice its death at once."""
 
 from __future__ import annotations
 
@@ -74,10 +74,11 @@ class Worker:
     async def start(self, settings: WorkerSettings) -> None:
         """Start the process and the thread that listens to it."""
         loop = asyncio.get_running_loop()
-        self._process, self._connection = await asyncio.to_thread(start_worker, settings)
-        self.pid = self._process.pid
+        process, connection = await asyncio.to_thread(start_worker, settings)
+        self._process, self._connection = process, connection
+        self.pid = process.pid
         threading.Thread(
-            target=self._listen, args=(loop, self._connection), name=f"worker-{self.number}", daemon=True
+            target=self._listen, args=(loop, connection), name=f"worker-{self.number}", daemon=True
         ).start()
 
     async def ready(self) -> None:

@@ -1,4 +1,4 @@
-"""The process that computes: started by spawn, one thread owns Warp, ended by Quit or by the end of its pipe."""
+"""The process that computes: one thread owns Warp; it ends by Quit or by the end of its pipe."""
 
 from __future__ import annotations
 

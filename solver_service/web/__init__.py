@@ -1,4 +1,4 @@
-"""The web face of the service: REST, the websocket stream, and `serve`, which runs them until told to stop."""
+"""The web face of the service: REST, the websocket stream, and `serve`, which runs them."""
 
 from solver_service.web.settings import ServiceSettings
 

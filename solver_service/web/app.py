@@ -51,7 +51,9 @@ def create_app(registry: RunRegistry, gate: Gate) -> FastAPI:
     def authorised(request: Request) -> None:
         if not gate.accepts_header(request.headers.get("authorization")):
             raise HTTPException(
-                401, "the Authorization header must carry 'Bearer' and the token", {"WWW-Authenticate": "Bearer"}
+                401,
+                "the Authorization header must carry 'Bearer' and the token",
+                {"WWW-Authenticate": "Bearer"},
             )
 
     @app.exception_handler(ServiceError)

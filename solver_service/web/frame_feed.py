@@ -1,4 +1,4 @@
-"""Which frame a client gets next: newest when it follows live, in order when it replays, keys before deltas."""
+"""Which frame a client gets next: the newest or the next in order, keys before deltas."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """What waits to be sent to one client, in two planes.
 
-Control messages are never dropped: when too many wait, the client has stopped reading and is closed with a reason.
-Bulk parts (terrain, frames) wait as iterators and are cut off one at a time, so that control goes in between.
+Control messages are never dropped: when too many wait, the client has stopped reading and is closed with a
+reason. Bulk parts (terrain, frames) wait as iterators and are cut off one at a time, so that control goes in
+between.
 """
 
 from __future__ import annotations

@@ -16,14 +16,17 @@ class ServiceSettings:
         host: address to listen on.
         port: TCP port; 0 picks a free one, told in the ready line.
         data_dir: folder of runs, frames and checkpoints; one service at a time.
-        token_file: file with the token; made with a random one (mode 600) where it does not exist. None: `token`
+        token_file: file with the token; made with a random one (mode 600) where it does not exist. None:
+            `token`
             below the data folder.
         ready_file: where the ready line is written as well, None for standard output only.
-        stop_with_stdin: end when standard input closes, so that a service never outlives the viewer that began it.
+        stop_with_stdin: end when standard input closes, so that a service never outlives the viewer that
+            began it.
         cases: cases offered beside the embedded ones and those of `FEV_DATA_HOME`: names or paths.
         device: device of runs that ask for "auto".
         threads: solver threads of a worker on the CPU; None for all cores.
-        allowed_origins: values of the Origin header that are served beside the own address; native viewers send none.
+        allowed_origins: values of the Origin header that are served beside the own address; native viewers
+            send none.
         ring_bytes: memory in which a worker keeps recent states for Recalculate [bytes].
         checkpoint_interval_s: wall time between checkpoints on disk [s].
         spare_workers: warm workers that stand by.

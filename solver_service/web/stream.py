@@ -170,21 +170,26 @@ class StreamConnection:
         event = await self._websocket.receive()
         if event["type"] == "websocket.disconnect":
             raise ConnectionEnded
-        data = event.get("bytes")
+        data: bytes | None = event.get("bytes")
         if data is None:
             self._refuse(1003, "malformed", "A text message came; only binary messages are allowed.")
-            await asyncio.Event().wait()
+            await self._until_closed()
+            return None
         try:
             (message,) = self.session.receive(data)
         except ProtocolError as error:
             self.outbox.put(self.session.refuse(error))
             if error.fatal:
                 self.outbox.close(error.close_code, str(error))
-                await asyncio.Event().wait()  # until the sender has closed
+                await self._until_closed()
             return None
         if isinstance(message, Subscribe | Seek | Unsubscribe):
             LOG.debug("session %s: %r", self.name, message)
         return message
+
+    async def _until_closed(self) -> None:
+        """Hear nothing more; the sender closes the connection, which ends all tasks."""
+        await asyncio.Event().wait()
 
     def _welcome(self, hello: Hello) -> None:
         self.tell(
@@ -211,5 +216,3 @@ class StreamConnection:
         async with asyncio.timeout(SEND_TIMEOUT_S):
             await self._websocket.close(code, reason[:120])
         raise ConnectionEnded
-
-
