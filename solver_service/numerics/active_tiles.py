@@ -19,7 +19,8 @@ class ActiveTiles:
     Args:
         store: rasters of the run.
         depth_film: depth [m] that does not move by itself.
-        forced: cells that may get water from outside, [nrows, ncols]; their tiles are always active.
+        forced: cells that may get water from outside, [nrows, ncols]; their tiles and those
+            around them are always active.
     """
 
     def __init__(self, store: FieldStore, depth_film: float, forced: npt.NDArray[np.bool_]) -> None:

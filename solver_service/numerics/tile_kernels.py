@@ -1,4 +1,4 @@
-"""Which compute tiles can change: wet ones, their neighbours, and those with a source.
+"""Which compute tiles can change: wet ones, those with a source, and the neighbours of both.
 
 Water crosses at most one cell in a step, so a list of wet tiles and their neighbours stays valid for as many steps as a
 tile has cells on a side. Water no deeper than `depth_film` does not move by itself and does not make a tile wet.
@@ -67,10 +67,10 @@ def list_active_tiles(
     tile = wp.tid()
     tile_row = tile // tile_cols
     tile_col = tile % tile_cols
-    now = forced[tile]
+    now = int(0)
     for a in range(wp.max(tile_row - 1, 0), wp.min(tile_row + 2, tile_rows)):
         for b in range(wp.max(tile_col - 1, 0), wp.min(tile_col + 2, tile_cols)):
-            now = wp.max(now, wet[a * tile_cols + b])
+            now = wp.max(now, wp.max(wet[a * tile_cols + b], forced[a * tile_cols + b]))
     if now == 1:
         tiles[wp.atomic_add(tile_count, 0, 1)] = tile
     elif active[tile] == 1:
