@@ -28,7 +28,7 @@ def sloshing():
     bed = bumps()
     x, _ = GRID.centres
     solver = make_solver(bed, GRID.dx, manning_n=0.02)
-    solver.set_water(np.where(x < 0.0, np.maximum(4.0 - bed, 0.0), 0.0).astype(np.float32))
+    solver.set_water(np.where(x < 0.0, np.maximum(3.0 - bed, 0.0), 0.0).astype(np.float32))
     return solver, bed
 
 
@@ -36,7 +36,7 @@ def test_long_run_with_wetting_and_drying_keeps_its_volume(figure):
     solver, _ = sloshing()
     before = stored(solver)
     wet = set()
-    for time in (200.0, 400.0, 600.0, 800.0, 1000.0):
+    for time in (50.0, 200.0, 600.0, 1200.0, 2400.0):
         solver.advance_to(time)
         wet.add(int((solver.depth() > 0.001).sum()))
     assert solver.step_count > 2000
@@ -102,6 +102,10 @@ def test_source_delivers_the_volume_of_its_hydrograph(figure):
         span = np.union1d(times, [until])
         span = span[span <= until]
         exact = np.trapezoid(np.interp(span, times, discharge), span)
-        off = abs(stored(solver) / exact - 1.0)
+        # The solver hands water out in quanta of 2^-16 m: less than one is kept back.
+        kept_back = exact - stored(solver)
+        quantum = rows.size * GRID.dx**2 * 2.0**-16
+        assert -1e-6 * exact < kept_back < quantum + 1e-6 * exact
+        off = abs(solver.budget().error_relative)
         figure(INFLOW, f"volume error at {until:.0f} s", off, below=1e-6, round_off=True)
-    assert abs(solver.budget().inflow / exact - 1.0) < 1e-6
+    figure(INFLOW, "volume short of the hydrograph's", kept_back / exact, below=1e-6, round_off=True)

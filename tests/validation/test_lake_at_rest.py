@@ -41,8 +41,8 @@ def rest(bed, level=LEVEL, boundaries=(), **params):
     solver = ShallowWaterSolver(model, SolverParams(**params), device="cpu")
     start = np.maximum(np.float32(level) - bed, np.float32(0.0))
     solver.set_water(start)
-    solver.advance_to(1.0)
-    solver.advance_to(STEPS * solver.time / solver.step_count * 1.01)
+    step = solver.params.cfl * GRID.dx / np.sqrt(9.81 * start.max())
+    solver.advance_to(1.01 * STEPS * float(step))
     assert solver.step_count >= STEPS
     return solver, start
 
