@@ -93,7 +93,7 @@ class FrameEncoder:
             scale = self.scale if scale is None else scale
         else:
             h = np.asarray(water, dtype=np.float32)
-            scale = self._scale_for(h, index) if scale is None else scale
+            scale = self._scale_of(h, run, index) if scale is None else scale
             q = quantise_depth(h, scale, self.depth_wet)
             states = self.layout.classify(q)
         if q.shape != (self.layout.nrows, self.layout.ncols) or states.shape != self.layout.shape:
@@ -101,7 +101,7 @@ class FrameEncoder:
                 f"Water has the shapes {q.shape} and {states.shape};"
                 f" {(self.layout.nrows, self.layout.ncols)} and {self.layout.shape} are allowed."
             )
-        is_key = force_key or self._needs_key(run, index, scale)
+        is_key = force_key or scale != self.scale or not self._is_in_group(run, index)
         if is_key:
             self._run, self._key_index, self._key_q, self.scale = run, index, q.copy(), scale
         mask = self.layout.owned_mask(states)
@@ -122,15 +122,13 @@ class FrameEncoder:
             )
         )
 
-    def _needs_key(self, run: str, index: int, scale: float) -> bool:
-        in_group = run == self._run and self._key_index < index < self._key_index + self.group
-        return not in_group or scale != self.scale
+    def _is_in_group(self, run: str, index: int) -> bool:
+        """Whether a frame may lean on the key frame of the group that is open."""
+        return run == self._run and self._key_index < index < self._key_index + self.group
 
-    def _scale_for(self, h: FloatArray, index: int) -> float:
+    def _scale_of(self, h: FloatArray, run: str, index: int) -> float:
         h_max = float(h.max(initial=0.0))
-        if index >= self._key_index + self.group or self._run is None:
-            return choose_depth_scale(h_max)
-        return self.choose_scale(h_max)
+        return self.choose_scale(h_max) if self._is_in_group(run, index) else choose_depth_scale(h_max)
 
 
 @dataclass(frozen=True)

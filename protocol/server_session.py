@@ -133,14 +133,12 @@ class ServerSession:
     def refuse(self, error: ProtocolError) -> list[bytes]:
         """Bytes of the `error` that tells the client what it did wrong."""
         message_id = error.message_id
-        if message_id is not None and message_id not in self._pending:
-            # The command was refused before it was registered; this is its one answer.
-            message_id = (
-                message_id if message_id > self._last_id and self.state is SessionState.OPEN else None
-            )
-            if message_id is not None:
-                self._last_id = message_id
-                self._pending[message_id] = None
+        if message_id is not None and message_id > self._last_id and self.state is SessionState.OPEN:
+            # The command was refused before it was known here; this is its one answer.
+            self._last_id = message_id
+            self._pending[message_id] = None
+        elif message_id not in self._pending:
+            message_id = None
         return self.send(Error(message_id, error.code, str(error)[:2000]))
 
     def needed_key(self, run: str, key_index: int) -> int | None:

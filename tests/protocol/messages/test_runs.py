@@ -1,3 +1,4 @@
+import msgpack
 import msgspec
 import pytest
 
@@ -23,6 +24,10 @@ def test_a_geometry_survives_its_wire_form() -> None:
 def test_more_cells_than_a_grid_may_have_are_refused() -> None:
     with pytest.raises(ValueError, match="cells"):
         GridInfo(1 << 16, 1 << 16, 1.0, 0.0, 0.0)
+    fields = msgpack.unpackb(pack(RunChanged(RUN)))
+    fields["run"]["grid"] |= {"nrows": 1 << 16, "ncols": 1 << 16}
+    with pytest.raises(InvalidMessage, match="cells"):
+        unpack_server(msgpack.packb(fields))
 
 
 @pytest.mark.parametrize("device", ["auto", "cpu", "cuda", "cuda:0", "cuda:12"])
