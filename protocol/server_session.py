@@ -131,13 +131,14 @@ class ServerSession:
         return [packed]
 
     def refuse(self, error: ProtocolError) -> list[bytes]:
-        """Bytes of the `error` that tells the client what it did wrong."""
+        """Bytes of the `error` that tells the client what it did wrong, for what `receive` raised."""
         message_id = error.message_id
         if message_id is not None and message_id > self._last_id and self.state is SessionState.OPEN:
             # The command was refused before it was known here; this is its one answer.
             self._last_id = message_id
             self._pending[message_id] = None
-        elif message_id not in self._pending:
+        else:
+            # An id that was used before has its own answer, given or to come.
             message_id = None
         return self.send(Error(message_id, error.code, str(error)[:2000]))
 

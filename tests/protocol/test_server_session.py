@@ -108,6 +108,16 @@ def test_a_refused_duplicate_gets_an_error_without_id() -> None:
     assert server.pending == {5}
 
 
+def test_a_refused_message_does_not_use_up_the_answer_of_a_pending_command() -> None:
+    server = connect().server
+    server.receive(p.pack(p.ListRuns(5)))
+    with pytest.raises(p.UnknownMessage) as caught:
+        server.receive(p.pack(p.StopRun(5, "r")).replace(b"stop_run", b"stop_fun"))
+    (data,) = server.refuse(caught.value)
+    assert p.unpack_server(data) == p.Error(None, "unknown_message", str(caught.value))
+    assert server.send(p.RunList(5, ()))
+
+
 def test_a_refusal_can_be_said_before_hello() -> None:
     server = p.ServerSession()
     with pytest.raises(p.MalformedMessage) as caught:
