@@ -1,8 +1,11 @@
 """Golden bytes: what every example looks like on the wire, as hexadecimal text.
 
-They are kept for ever: a change here is a change of the protocol. A new message gets its file by
+They are kept for ever: a change here is a change of the protocol. Examples that have no file yet get one by
 
     python -m tests.protocol.golden
+
+and a file that is there is never written again; who means to change one deletes it first. The files in
+`golden/compressed` hold zstd data, which may differ between its releases: they are only ever read.
 """
 
 from pathlib import Path
@@ -24,11 +27,13 @@ def read_hex(name: str) -> bytes:
     return bytes.fromhex((FOLDER / f"{name}.hex").read_text(encoding="ascii"))
 
 
-def renew() -> None:
+def write_missing() -> None:
     FOLDER.mkdir(exist_ok=True)
     for name, message in EXAMPLES.items():
-        (FOLDER / f"{name}.hex").write_text(to_hex(pack(message)), encoding="ascii")
+        path = FOLDER / f"{name}.hex"
+        if not path.exists():
+            path.write_text(to_hex(pack(message)), encoding="ascii")
 
 
 if __name__ == "__main__":
-    renew()
+    write_missing()
