@@ -61,9 +61,10 @@ class ServiceDesk:
 
     def drain(self) -> list[protocol.Frame]:
         """Act on every waiting control message; return the frames that came, and let as many more come."""
+        # Frames first: what was said before a frame came is then known before it is used.
+        frames = self.connection.mailbox.take_frames()
         for message in self.connection.mailbox.take_control():
             self._handle(message)
-        frames = self.connection.mailbox.take_frames()
         if frames:
             self._link.grant(len(frames))
         return frames
