@@ -73,6 +73,8 @@ def make_stage(ctx: moderngl.Context) -> Iterator[Callable[..., Stage]]:
     assert ctx.error == "GL_NO_ERROR"
     yield make
     assert ctx.error == "GL_NO_ERROR"
+    # moderngl goes back to the framebuffer bound last, which must therefore outlive the ones released here.
+    ctx.detect_framebuffer(0).use()
     for stage in stages:
         stage.renderer.release()
         stage.framebuffer.release()

@@ -2,6 +2,7 @@
 
 from viewer.lod.block_errors import BlockBounds, block_bounds, block_errors
 from viewer.lod.block_tiling import BlockTiling, classify_blocks
+from viewer.lod.edge_errors import edge_errors
 from viewer.lod.selection import BlockSelector, LodStats, Selection
 from viewer.lod.switch_table import SwitchTable, pixels_per_slope, screen_error_factor
 
@@ -15,6 +16,7 @@ __all__ = [
     "block_bounds",
     "block_errors",
     "classify_blocks",
+    "edge_errors",
     "pixels_per_slope",
     "screen_error_factor",
 ]

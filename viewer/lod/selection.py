@@ -138,7 +138,7 @@ class BlockSelector:
             scale = (
                 slope_px * frame.exaggeration * screen_error_factor(camera.elevation, camera.fov_y, aspect)
             )
-            level = self._table.levels(distance, scale, tau_px)
+            level = self._table.levels(distance, scale, tau_px, self._least_beside(distance))
             if states is not None:
                 level[states == PARTIAL] = self._spacing_levels(
                     distance[states == PARTIAL], slope_px, partial_spacing_px
@@ -162,6 +162,15 @@ class BlockSelector:
             high = high + (states != DRY) * np.float32(depth_max * frame.exaggeration)
         self._centre[1] = 0.5 * (low + high)
         self._half[1] = 0.5 * (high - low)
+
+    def _least_beside(self, distance: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+        """The least distance of each block and the four beside it."""
+        padded = np.full((self._tiling.block_rows + 2, self._tiling.block_cols + 2), np.inf, dtype=np.float32)
+        padded[1:-1, 1:-1] = distance.reshape(self._tiling.block_rows, self._tiling.block_cols)
+        least = np.minimum(padded[1:-1, 1:-1], padded[1:-1, :-2])
+        for beside in (padded[1:-1, 2:], padded[:-2, 1:-1], padded[2:, 1:-1]):
+            np.minimum(least, beside, out=least)
+        return least.ravel()
 
     def _spacing_levels(
         self, distance: npt.NDArray[np.float32], slope_px: float, spacing_px: float

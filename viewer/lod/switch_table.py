@@ -33,8 +33,8 @@ def pixels_per_slope(height_px: int, fov_y: float) -> float:
 def screen_error_factor(pitch: float, fov_y: float, aspect: float) -> float:
     """Upper bound of the screen length of a vertical unit, relative to one seen square-on.
 
-    In eye space a vertical displacement is (0, cos p, sin p). It moves a projected point at depth z by at most
-    sqrt((cos p + tan_y sin p)^2 + (tan_x sin p)^2) / z, with tan_x and tan_y those of the picture's corner,
+    In eye space a vertical displacement is (0, cos p, sin p). It moves a projected point at depth z by at
+    most sqrt((cos p + tan_y sin p)^2 + (tan_x sin p)^2) / z, with tan_x and tan_y those of the picture's corner,
     and z is at least the distance times the cosine of the corner's angle off axis.
 
     Args:
@@ -51,36 +51,42 @@ def screen_error_factor(pitch: float, fov_y: float, aspect: float) -> float:
 class SwitchTable:
     """Switch distances of all blocks and levels, for any threshold and picture.
 
-    Only the product of error and pixel scale matters, so the table keeps errors, made monotone over the levels,
-    and scales the distance instead: a new threshold costs nothing.
+    Only the product of error and pixel scale matters, so the table keeps errors, made monotone over the
+    levels, and scales the distance instead: a new threshold costs nothing.
     """
 
-    def __init__(self, errors: Array) -> None:
+    def __init__(self, errors: Array, charges: Array | None = None) -> None:
         """Take the errors.
 
         Args:
             errors: error of each level [m], shape [level_count, block_rows, block_cols].
+            charges: error that each level causes in the blocks beside it (`edge_errors`); None for none.
         """
         self._level_count = errors.shape[0]
         self._shape = errors.shape[1:]
         self._monotone = np.zeros((self._level_count, int(np.prod(self._shape))), dtype=np.float32)
-        self.update(errors, (0, 0, *self._shape))
+        self._charges = np.zeros_like(self._monotone)
+        self.update(errors, charges, (0, 0, *self._shape))
 
     @property
     def level_count(self) -> int:
         """Levels of detail."""
         return int(self._level_count)
 
-    def update(self, errors: Array, blocks: tuple[int, int, int, int]) -> None:
+    def update(self, errors: Array, charges: Array | None, blocks: tuple[int, int, int, int]) -> None:
         """Refresh a rectangle of blocks.
 
         Args:
             errors: their errors [m], shape [level_count, rows, cols].
+            charges: their charges [m], of the same shape; None for none.
             blocks: first block row, first block column, end block row, end block column.
         """
-        grid = self._monotone.reshape(self._level_count, *self._shape)
+        window = (slice(None), slice(blocks[0], blocks[2]), slice(blocks[1], blocks[3]))
+        shape = (self._level_count, *self._shape)
         # A finer level must never be refused where a coarser one is allowed.
-        grid[:, blocks[0] : blocks[2], blocks[1] : blocks[3]] = np.maximum.accumulate(errors, axis=0)
+        self._monotone.reshape(shape)[window] = np.maximum.accumulate(errors, axis=0)
+        if charges is not None:
+            self._charges.reshape(shape)[window] = np.maximum.accumulate(charges, axis=0)
 
     def distances(self, pixel_scale: float, tau_px: float) -> Array:
         """The switch distances D_l [m], shape [level_count, block_count].
@@ -91,16 +97,21 @@ class SwitchTable:
         """
         return self._monotone * np.float32(pixel_scale / tau_px)
 
-    def levels(self, distance: Array, pixel_scale: float, tau_px: float) -> npt.NDArray[np.uint8]:
+    def levels(
+        self, distance: Array, pixel_scale: float, tau_px: float, distance_beside: Array | None = None
+    ) -> npt.NDArray[np.uint8]:
         """The coarsest level that each block may use.
 
         Args:
             distance: from the eye to the nearest point of each block's box [m], shape [block_count].
             pixel_scale: as in `distances`.
             tau_px: as in `distances`.
+            distance_beside: the least distance of the block and those beside it [m]; None takes `distance`.
         """
-        allowed = distance * np.float32(tau_px / pixel_scale)
+        per_metre = np.float32(tau_px / pixel_scale)
+        allowed = distance * per_metre
+        beside = allowed if distance_beside is None else distance_beside * per_metre
         level = np.zeros(distance.shape, dtype=np.uint8)
-        for errors in self._monotone[1:]:
-            level += errors <= allowed
+        for errors, charges in zip(self._monotone[1:], self._charges[1:], strict=True):
+            level += (errors <= allowed) & (charges <= beside)
         return level

@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from viewer.lod import BlockSelector, BlockTiling, Selection, SwitchTable, block_bounds, block_errors
+from viewer.lod import (
+    BlockSelector,
+    BlockTiling,
+    Selection,
+    SwitchTable,
+    block_bounds,
+    block_errors,
+    edge_errors,
+)
 from viewer.render.frame_inputs import EditOverlay, FrameInputs
 from viewer.world.coordinates import WorldFrame
 from viewer.world.heightfield import Heightfield, Rect
@@ -23,23 +31,33 @@ class TerrainLod:
         self._heightfield = heightfield
         self.tiling = tiling
         self._bounds = block_bounds(heightfield.z_b, tiling)
-        self._table = SwitchTable(block_errors(heightfield.z_b, tiling))
+        errors = block_errors(heightfield.z_b, tiling)
+        self._table = SwitchTable(errors, edge_errors(heightfield.z_b, tiling, errors))
         self._selector = BlockSelector(tiling, heightfield.grid.dx, self._table, self._bounds)
         self._edited: npt.NDArray[np.bool_] | None = None
         self._edit_revision: int | None = None
 
     def refresh(self, dirty: Rect) -> None:
-        """Redo errors and bounds of the blocks that hold a vertex of a rectangle of cells."""
+        """Redo the errors and bounds of the blocks that hold a vertex of a rectangle of cells."""
         tiling = self.tiling
-        b_row0, b_col0, b_row1, b_col1 = blocks = tiling.blocks_touching(dirty)
-        row0, row1 = int(tiling.row_start[b_row0]), int(tiling.row_end[b_row1 - 1]) + 1
-        col0, col1 = int(tiling.col_start[b_col0]), int(tiling.col_end[b_col1 - 1]) + 1
+        first_row, first_col, end_row, end_col = tiling.blocks_touching(dirty)
+        # Charges go across edges: redo one ring more, and read two, of which the outer one comes out wrong.
+        redone = _grown((first_row, first_col, end_row, end_col), 1, tiling)
+        read = _grown(redone, 1, tiling)
+        row0, row1 = int(tiling.row_start[read[0]]), int(tiling.row_end[read[2] - 1]) + 1
+        col0, col1 = int(tiling.col_start[read[1]]), int(tiling.col_end[read[3] - 1]) + 1
         z = self._heightfield.z_b[row0:row1, col0:col1]
         part = BlockTiling(z.shape[0], z.shape[1], tiling.block_size)
-        bounds = block_bounds(z, part)
-        window = (slice(b_row0, b_row1), slice(b_col0, b_col1))
-        self._bounds.z_min[window], self._bounds.z_max[window] = bounds.z_min, bounds.z_max
-        self._table.update(block_errors(z, part), blocks)
+        errors, bounds = block_errors(z, part), block_bounds(z, part)
+        charges = edge_errors(z, part, errors)
+        target = (slice(redone[0], redone[2]), slice(redone[1], redone[3]))
+        rows = slice(redone[0] - read[0], redone[2] - read[0])
+        cols = slice(redone[1] - read[1], redone[3] - read[1])
+        self._bounds.z_min[target], self._bounds.z_max[target] = (
+            bounds.z_min[rows, cols],
+            bounds.z_max[rows, cols],
+        )
+        self._table.update(errors[:, rows, cols], charges[:, rows, cols], redone)
 
     def follow_edits(self, edits: EditOverlay | None) -> None:
         """Note which blocks hold an edited vertex: they are drawn at full resolution."""
@@ -77,3 +95,14 @@ class TerrainLod:
             cull_covered_terrain=options.cull_covered_terrain,
             full_mesh=options.full_mesh,
         )
+
+
+def _grown(blocks: Rect, by: int, tiling: BlockTiling) -> Rect:
+    """A rectangle of blocks with more around it, as far as there are any."""
+    row0, col0, row1, col1 = blocks
+    return (
+        max(0, row0 - by),
+        max(0, col0 - by),
+        min(tiling.block_rows, row1 + by),
+        min(tiling.block_cols, col1 + by),
+    )

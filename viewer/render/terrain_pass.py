@@ -35,7 +35,7 @@ class TerrainPass:
         ctx.enable_only(moderngl.DEPTH_TEST)
         ctx.depth_func = "<="
         # The ground steps back a hair, so that water lying on it wins.
-        ctx.polygon_offset = (1.0, 1.0)
+        ctx.polygon_offset = (0.0, 2.0)
         ctx.wireframe = options.wireframe
         ground.bind(height=0, colour=1, mask=2)
         set_uniforms(self._program, snap_edges=int(options.snap_edges))

@@ -37,7 +37,7 @@ def test_half_the_threshold_doubles_the_distances(errors: np.ndarray) -> None:
 def test_refreshing_some_blocks_leaves_the_others(errors: np.ndarray) -> None:
     table = SwitchTable(errors)
     before = table.distances(1.0, 1.0).reshape(6, 5, 7)
-    table.update(np.full((6, 2, 3), 50.0, dtype=np.float32), (1, 2, 3, 5))
+    table.update(np.full((6, 2, 3), 50.0, dtype=np.float32), None, (1, 2, 3, 5))
     after = table.distances(1.0, 1.0).reshape(6, 5, 7)
 
     assert (after[:, 1:3, 2:5] == 50.0).all()

@@ -1,0 +1,23 @@
+import dataclasses
+
+import pytest
+
+from viewer.render import FrameInputs, RenderOptions
+from viewer.world import Camera
+
+
+def test_inputs_cannot_change_while_a_picture_is_drawn() -> None:
+    inputs = FrameInputs(Camera((0.0, 0.0, 0.0), 10.0, 0.0, 0.5))
+
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        inputs.water = None  # type: ignore[misc]
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        inputs.options.tau_px = 5.0  # type: ignore[misc]
+
+
+def test_the_defaults_are_those_of_the_design() -> None:
+    options = RenderOptions()
+
+    assert options.tau_px == 2.0
+    assert options.exaggeration == 1.0
+    assert options.partial_spacing_px == 0.0  # an exact shore: every vertex of partial blocks is drawn

@@ -1,0 +1,503 @@
+"""Facts about whole pictures, each with a mutant that must break it."""
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+
+import moderngl
+import numpy as np
+import pytest
+
+from viewer.errors import TerrainDataError
+from viewer.render import (
+    EditOverlay,
+    FrameInputs,
+    HudText,
+    RenderOptions,
+    WaterFrame,
+    WaterPair,
+    WaterStyle,
+    march_ray,
+)
+from viewer.world import Camera, Heightfield, overview
+
+pytestmark = pytest.mark.gl
+
+MAGENTA = (1.0, 0.0, 1.0)
+BARE = {"show_sky": False, "show_skirt": False, "fog": False, "background": MAGENTA}
+
+INSIDE = [
+    Camera((0.0, 20.0, 0.0), 260.0, 0.4, math.radians(45.0)),
+    Camera((300.0, 20.0, 200.0), 330.0, 2.4, math.radians(52.0)),
+    Camera((-400.0, 20.0, -100.0), 200.0, -1.7, math.radians(60.0)),
+    Camera((100.0, 20.0, -300.0), 500.0, 4.0, math.radians(48.0)),
+]
+"""Steep views inside the map: no sky, no border."""
+
+VIEWS = [*INSIDE, overview(3210.0, 2570.0, 20.0), Camera((0.0, 40.0, 0.0), 700.0, 0.9, math.radians(14.0))]
+
+
+def magenta_pixels(picture: np.ndarray) -> int:
+    return int((picture == [255, 0, 255]).all(axis=2).sum())
+
+
+def triangle_height(field: Heightfield, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Ground on the full-resolution triangles, split from south-west to north-east."""
+    nrows, ncols = field.z_b.shape
+    row, col = field.grid.to_cell(x, y)
+    r = np.clip(np.floor(row).astype(int), 0, nrows - 2)
+    c = np.clip(np.floor(col).astype(int), 0, ncols - 2)
+    t, s = row - r, col - c
+    z = field.z_b.astype(np.float64)
+    sw, se, nw, ne = z[r, c], z[r, c + 1], z[r + 1, c], z[r + 1, c + 1]
+    return np.where(s >= t, sw + s * (se - sw) + t * (ne - se), sw + t * (nw - sw) + s * (ne - nw))
+
+
+def screen_errors(stage, field: Heightfield, camera: Camera) -> np.ndarray:
+    """Pixels between each drawn point of the ground and the true ground above or below it."""
+    depth, back = stage.renderer.read_depth()
+    rows, cols = np.nonzero(depth < 1.0)
+    drawn = back.world(cols, rows, depth[rows, cols])
+    x, y = drawn[:, 0] + field.frame.x_centre, field.frame.y_centre - drawn[:, 2]
+    inner = field.grid.dx
+    xmin, ymin, xmax, ymax = field.grid.extent
+    keep = (x > xmin + inner) & (x < xmax - inner) & (y > ymin + inner) & (y < ymax - inner)
+    true = drawn[keep].copy()
+    true[:, 1] = field.frame.height(triangle_height(field, x[keep], y[keep]))
+    width, height = stage.size
+    view = camera.projection(width / height, 1.0, 1e5) @ camera.view_matrix()
+
+    def pixels(points: np.ndarray) -> np.ndarray:
+        clip = np.column_stack([points, np.ones(len(points))]) @ view.T
+        return clip[:, :2] / clip[:, 3:] * [width / 2, height / 2]
+
+    return np.linalg.norm(pixels(true) - pixels(drawn[keep]), axis=1)
+
+
+# --- no cracks ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("block_size", [17, 33, 65])
+def test_no_crack_shows_between_blocks_of_any_levels(
+    hilly: Heightfield, make_stage: Callable, block_size: int
+) -> None:
+    stage = make_stage(hilly, block_size=block_size)
+    for camera in INSIDE:
+        for tau in (2.0, 8.0, 30.0):
+            picture = stage.draw(FrameInputs(camera, options=RenderOptions(tau_px=tau, **BARE)))
+            assert magenta_pixels(picture) == 0
+
+
+def test_without_fitted_edges_cracks_do_show(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    cracks = [
+        magenta_pixels(
+            stage.draw(FrameInputs(c, options=RenderOptions(tau_px=8.0, snap_edges=False, **BARE)))
+        )
+        for c in INSIDE
+    ]
+
+    assert sum(cracks) > 20
+
+
+def test_a_terrain_that_fits_no_block_is_covered_to_its_last_row(
+    make_heightfield: Callable, make_stage: Callable
+) -> None:
+    field = make_heightfield(75, 131)
+    camera = Camera((0.0, 0.0, 0.0), 2500.0, 0.0, math.pi / 2)
+    lod = make_stage(field).draw(FrameInputs(camera, options=RenderOptions(tau_px=4.0, **BARE)))
+    full = make_stage(field).draw(FrameInputs(camera, options=RenderOptions(full_mesh=True, **BARE)))
+
+    assert 0 < magenta_pixels(full) < full.shape[0] * full.shape[1]
+    assert abs(magenta_pixels(lod) - magenta_pixels(full)) < 60
+
+
+# --- the screen error asked for is kept ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tau", [1.0, 2.0, 6.0])
+def test_the_ground_is_drawn_within_the_screen_error_asked_for(
+    hilly: Heightfield, make_stage: Callable, tau: float
+) -> None:
+    stage = make_stage(hilly, (640, 360))
+    for camera in VIEWS:
+        stage.draw(FrameInputs(camera, options=RenderOptions(tau_px=tau, **BARE)))
+        errors = screen_errors(stage, hilly, camera)
+        # A rasteriser extrapolates the depth of slivers at will: a pixel or two may be off.
+        assert (errors > tau).sum() <= 2
+
+
+def test_a_shifted_or_raised_ground_breaks_the_error_bound(hilly: Heightfield, make_stage: Callable) -> None:
+    camera = VIEWS[5]
+    stage = make_stage(hilly, (640, 360))
+    stage.draw(FrameInputs(camera, options=RenderOptions(tau_px=2.0, **BARE)))
+    raised, shifted = (
+        Heightfield(hilly.grid, hilly.z_b + 5.0),
+        Heightfield(hilly.grid, np.roll(hilly.z_b, 1, 1)),
+    )
+    for mutant in (raised, shifted):
+        mutant.frame = hilly.frame
+        assert (screen_errors(stage, mutant, camera) > 2.0).mean() > 0.02
+
+
+def test_the_full_mesh_is_the_ground_itself(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly, (640, 360))
+    for camera in VIEWS:
+        stage.draw(FrameInputs(camera, options=RenderOptions(full_mesh=True, **BARE)))
+        assert np.percentile(screen_errors(stage, hilly, camera), 99.0) < 0.1
+
+
+def test_an_edit_is_drawn_within_the_error_at_once(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly, (640, 360))
+    camera = Camera((0.0, 40.0, 0.0), 900.0, 0.9, math.radians(30.0))
+    inputs = FrameInputs(camera, options=RenderOptions(tau_px=6.0, **BARE))
+    stage.draw(inputs)
+    edited = hilly.z_b.copy()
+    edited[120:124, 100:200] += 25.0
+    hilly.set(edited, (120, 100, 124, 200))
+    stage.draw(inputs)
+
+    assert (screen_errors(stage, hilly, camera) > 6.0).sum() <= 2
+
+
+def test_level_of_detail_saves_most_triangles_in_few_draws(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    stage.draw(FrameInputs(VIEWS[4], options=RenderOptions(tau_px=3.0, **BARE)))
+    assert stage.stats.terrain_triangles < 0.25 * 2 * 256 * 320
+    assert stage.stats.draws <= 8
+
+
+def test_the_triangles_drawn_are_those_counted(
+    hilly: Heightfield, make_stage: Callable, ctx: moderngl.Context
+) -> None:
+    stage = make_stage(hilly)
+    stage.draw(FrameInputs(VIEWS[0]))
+    query = ctx.query(primitives=True)
+    with query:
+        stage.draw(FrameInputs(VIEWS[0], options=RenderOptions(full_mesh=True, cull=False, **BARE)))
+
+    # The last pass adds its one triangle.
+    assert query.primitives == stage.stats.terrain_triangles + 1
+
+
+# --- culling -------------------------------------------------------------------------------------------
+
+
+def test_culling_changes_no_pixel(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    for camera in VIEWS:
+        culled = stage.draw(FrameInputs(camera, options=RenderOptions(**BARE)))
+        count = stage.stats.culled_blocks
+        whole = stage.draw(
+            FrameInputs(camera, options=RenderOptions(cull=False, show_sky=False, show_skirt=False))
+        )
+        whole = stage.draw(FrameInputs(camera, options=RenderOptions(cull=False, **BARE)))
+        different = (np.abs(culled.astype(int) - whole).max(axis=2) > 2).mean()
+        # The clip planes follow the boxes in view, so depths round differently.
+        assert different < 0.002
+        assert stage.stats.culled_blocks == 0
+        if camera in INSIDE:
+            assert count > 20
+
+
+# --- picking -------------------------------------------------------------------------------------------
+
+
+def test_a_picked_place_lies_under_the_mouse(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly, (640, 360))
+    for camera in VIEWS:
+        stage.draw(FrameInputs(camera))
+        matrix = camera.projection(640 / 360, 1.0, 1e5) @ camera.view_matrix()
+        for x, y in ((320.0, 200.0), (251.0, 303.0), (400.5, 250.5)):
+            place = stage.renderer.pick(x, y)
+            assert place is not None
+            clip = matrix @ [*hilly.frame.to_world(*place), 1.0]
+            px, py = (clip[0] / clip[3] + 1.0) * 320.0, (1.0 - clip[1] / clip[3]) * 180.0
+            assert (px, py) == pytest.approx((math.floor(x) + 0.5, math.floor(y) + 0.5), abs=0.05)
+
+
+def test_a_picked_place_lies_on_the_ground_and_agrees_with_the_ray(
+    hilly: Heightfield, make_stage: Callable
+) -> None:
+    stage = make_stage(hilly, (640, 360))
+    camera = VIEWS[0]
+    stage.draw(FrameInputs(camera, options=RenderOptions(full_mesh=True)))
+    for column, row in ((320, 180), (100, 300), (500, 90)):
+        place = stage.renderer.pick(column, row)
+        assert place is not None
+        ray = march_ray(
+            camera, (column + 0.5) / 320.0 - 1.0, 1.0 - (row + 0.5) / 180.0, 640 / 360, hilly, hilly.frame
+        )
+        assert ray is not None
+        assert place[2] == pytest.approx(hilly.sample(place[0], place[1]), abs=0.3)
+        assert math.dist(place, ray) < 1.5
+
+
+def test_the_sky_and_places_outside_of_the_picture_are_nowhere(
+    hilly: Heightfield, make_stage: Callable
+) -> None:
+    stage = make_stage(hilly)
+    assert stage.renderer.pick(10.0, 10.0) is None
+    stage.draw(FrameInputs(Camera((0.0, 300.0, 0.0), 3000.0, 0.0, math.radians(3.0))))
+
+    assert stage.renderer.pick(240.0, 2.0) is None
+    assert stage.renderer.pick(-1.0, 50.0) is None
+    assert stage.renderer.pick(50.0, 300.0) is None
+
+
+# --- water ---------------------------------------------------------------------------------------------
+
+
+def lake(field: Heightfield, level: float) -> np.ndarray:
+    return np.maximum(level - field.z_b, 0.0).astype(np.float32)
+
+
+def wet_pixels(stage, field: Heightfield, h: np.ndarray, camera: Camera, **options: object) -> tuple:
+    """Where water lies before the ground, and the greatest and least depth of the cells around each pixel."""
+    plain = {**BARE, **options}
+    stage.draw(FrameInputs(camera, options=RenderOptions(**plain)))
+    ground, _ = stage.renderer.read_depth()
+    frame = WaterFrame("lake", h)
+    stage.draw(FrameInputs(camera, WaterPair(frame, frame), options=RenderOptions(**plain)))
+    depth, back = stage.renderer.read_depth()
+    changed = depth < ground - 2e-7
+    rows, cols = np.mgrid[: depth.shape[0], : depth.shape[1]]
+    world = back.world(cols, rows, depth)
+    grid = field.grid
+    row, col = grid.to_cell(world[..., 0] + field.frame.x_centre, field.frame.y_centre - world[..., 2])
+    r = np.clip(np.rint(row).astype(int), 0, grid.nrows - 1)
+    c = np.clip(np.rint(col).astype(int), 0, grid.ncols - 1)
+    reach = np.stack(
+        [
+            h[np.clip(r + i, 0, grid.nrows - 1), np.clip(c + j, 0, grid.ncols - 1)]
+            for i in (-1, 0, 1)
+            for j in (-1, 0, 1)
+        ]
+    )
+    on_map = depth < 1.0
+    return (
+        changed[::-1] & on_map,
+        np.where(on_map, reach.max(axis=0), 0.0),
+        np.where(on_map, reach.min(axis=0), 0.0),
+    )
+
+
+def test_water_shows_where_cells_are_wet_and_nowhere_else(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly, (640, 360))
+    h = lake(hilly, -10.0)
+    for camera in (overview(3210.0, 2570.0, 20.0), Camera((0.0, 0.0, 0.0), 900.0, 0.9, math.radians(50.0))):
+        shown, deepest_near, shallowest_near = wet_pixels(stage, hilly, h, camera, full_mesh=True)
+        assert 0.1 < shown.mean() < 0.9
+        assert not (shown & (deepest_near == 0.0)).any()
+        assert shown[shallowest_near > 0.3].mean() > 0.999
+
+
+def test_water_that_is_not_there_fails_that_test(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly, (640, 360))
+    h = lake(hilly, -10.0)
+    shown, _, _ = wet_pixels(stage, hilly, h, overview(3210.0, 2570.0, 20.0), full_mesh=True)
+    stage.draw(FrameInputs(overview(3210.0, 2570.0, 20.0), options=RenderOptions(**BARE)))
+    _, elsewhere, _ = wet_pixels(
+        stage, hilly, np.roll(h, 40, 1), overview(3210.0, 2570.0, 20.0), full_mesh=True
+    )
+
+    assert (shown & (elsewhere == 0.0)).sum() > 100
+
+
+def test_under_wet_blocks_nothing_shows_through(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    deep = WaterFrame("deep", np.full(hilly.z_b.shape, 4.0, dtype=np.float32))
+    film = WaterFrame("film", np.full(hilly.z_b.shape, 0.004, dtype=np.float32))
+    for water in (deep, film):
+        for camera in INSIDE:
+            picture = stage.draw(FrameInputs(camera, WaterPair(water, water), options=RenderOptions(**BARE)))
+            assert magenta_pixels(picture) == 0
+            assert stage.stats.terrain_triangles == 0
+            assert stage.stats.covered_blocks > 0
+
+
+def test_no_crack_shows_between_water_and_ground(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    water = WaterFrame("lake", lake(hilly, 5.0))
+    for camera in INSIDE:
+        for spacing in (0.0, 6.0):
+            options = RenderOptions(tau_px=8.0, water_spacing_px=spacing, partial_spacing_px=spacing, **BARE)
+            picture = stage.draw(FrameInputs(camera, WaterPair(water, water), options=options))
+            assert magenta_pixels(picture) == 0
+
+
+def test_a_film_too_thin_to_show_looks_like_the_ground(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    film = WaterFrame("film", np.full(hilly.z_b.shape, 0.004, dtype=np.float32))
+    options = RenderOptions(full_mesh=True, depth_shown=0.01, **BARE)
+    ground = stage.draw(FrameInputs(INSIDE[0], options=options))
+    wet = stage.draw(FrameInputs(INSIDE[0], WaterPair(film, film), options=options))
+
+    assert np.abs(ground.astype(int) - wet).mean() < 1.0
+
+
+def test_between_two_frames_water_rises_steadily(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly, (320, 200))
+    camera = Camera((0.0, 0.0, 0.0), 900.0, 0.0, math.pi / 2)
+    low, high = WaterFrame("low", lake(hilly, -30.0)), WaterFrame("high", lake(hilly, 20.0))
+    dry = stage.draw(FrameInputs(camera, options=RenderOptions(**BARE))).astype(int)
+    wet = []
+    for alpha in (0.0, 0.25, 0.5, 0.75, 1.0):
+        picture = stage.draw(FrameInputs(camera, WaterPair(low, high, alpha), options=RenderOptions(**BARE)))
+        wet.append(int((np.abs(picture - dry).max(axis=2) > 12).sum()))
+
+    assert wet == sorted(wet)
+    assert wet[0] < wet[2] < wet[4]
+
+
+def test_a_frame_that_dried_up_leaves_no_water_behind(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    camera, options = INSIDE[0], RenderOptions(**BARE)
+    dry = stage.draw(FrameInputs(camera, options=options))
+    for number, level in enumerate((30.0, -20.0, 10.0)):
+        frame = WaterFrame(number, lake(hilly, level))
+        stage.draw(FrameInputs(camera, WaterPair(frame, frame), options=options))
+    nothing = WaterFrame("dry", np.zeros(hilly.z_b.shape, dtype=np.float32))
+    picture = stage.draw(FrameInputs(camera, WaterPair(nothing, nothing), options=options))
+
+    assert np.array_equal(picture, dry)
+
+
+def test_the_same_frame_drawn_again_is_the_same_picture(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    frame = WaterFrame("lake", lake(hilly, 0.0))
+    inputs = FrameInputs(VIEWS[4], WaterPair(frame, frame), hud=HudText(title="a", time="b"))
+
+    assert np.array_equal(stage.draw(inputs), stage.draw(inputs))
+
+
+def test_depth_classes_have_the_colours_of_the_legend(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    camera = Camera((0.0, 0.0, 0.0), 500.0, 0.0, math.pi / 2)
+    means = []
+    for depth in (0.1, 0.4, 0.9, 5.0):
+        frame = WaterFrame(depth, np.full(hilly.z_b.shape, depth, dtype=np.float32))
+        options = RenderOptions(water_style=WaterStyle.DEPTH_CLASSES, **BARE)
+        means.append(
+            stage.draw(FrameInputs(camera, WaterPair(frame, frame), options=options)).mean(axis=(0, 1))
+        )
+
+    assert all(earlier.sum() > later.sum() + 40.0 for earlier, later in pairwise(means))
+    assert means[0][0] > means[0][2] + 30.0  # shallow is yellow
+    assert means[3][2] > means[3][1] + 20.0  # deep is purple
+
+
+def test_a_raised_preview_stands_out_of_the_water_at_an_unchanged_level(
+    hilly: Heightfield, make_stage: Callable
+) -> None:
+    stage = make_stage(hilly)
+    camera = Camera((0.0, 0.0, 0.0), 600.0, 0.0, math.pi / 2)
+    bed = hilly.z_b
+    frame = WaterFrame("flood", np.full(bed.shape, 2.0, dtype=np.float32), z_b=bed)
+    edited = bed.copy()
+    edited[110:150, 158:163] += 3.0
+    hilly.set(edited, (110, 158, 150, 163))
+    sign = np.sign(edited - bed).astype(np.int8)
+    picture = stage.draw(
+        FrameInputs(camera, WaterPair(frame, frame), EditOverlay(1, sign), RenderOptions(**BARE))
+    )
+    place = stage.renderer.pick(240.0, 150.0)
+
+    assert place is not None
+    assert place[2] == pytest.approx(hilly.sample(place[0], place[1]), abs=0.2)
+    assert magenta_pixels(picture) == 0
+    aside = stage.renderer.pick(400.0, 150.0)
+    assert aside is not None
+    assert aside[2] == pytest.approx(hilly.sample(aside[0], aside[1]) + 2.0, abs=0.2)
+
+
+def test_water_of_another_size_is_refused(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    frame = WaterFrame("small", np.zeros((10, 10), dtype=np.float32))
+
+    with pytest.raises(TerrainDataError, match=r"water depth has shape \(10, 10\)"):
+        stage.draw(FrameInputs(VIEWS[0], WaterPair(frame, frame)))
+
+
+# --- edits ---------------------------------------------------------------------------------------------
+
+
+def test_raised_ground_is_warm_and_lowered_ground_is_cool(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    camera = Camera((0.0, 0.0, 0.0), 600.0, 0.0, math.pi / 2)
+    sign = np.zeros(hilly.z_b.shape, dtype=np.int8)
+    sign[:, :160], sign[:, 161:] = 1, -1
+    plain = stage.draw(FrameInputs(camera, options=RenderOptions(**BARE))).astype(int)
+    marked = stage.draw(
+        FrameInputs(camera, edits=EditOverlay(1, sign), options=RenderOptions(**BARE))
+    ).astype(int)
+    again = stage.draw(FrameInputs(camera, options=RenderOptions(**BARE))).astype(int)
+    left, right = marked[:, 10:200].mean(axis=(0, 1)), marked[:, 280:470].mean(axis=(0, 1))
+
+    assert left[0] > left[2] + 60.0
+    assert right[2] > right[0] + 60.0
+    assert np.array_equal(plain, again)
+
+
+# --- options and targets --------------------------------------------------------------------------------
+
+
+def test_multisampling_smooths_and_still_lets_depth_be_read(hilly: Heightfield, make_stage: Callable) -> None:
+    stage = make_stage(hilly)
+    plain = stage.draw(FrameInputs(VIEWS[4]))
+    one = stage.renderer.pick(240.0, 170.0)
+    smooth = stage.draw(FrameInputs(VIEWS[4], options=RenderOptions(samples=4)))
+    four = stage.renderer.pick(240.0, 170.0)
+
+    assert one is not None
+    assert four is not None
+    assert math.dist(one, four) < 40.0
+    assert 0 < (plain != smooth).any(axis=2).mean() < 0.5
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        {"wireframe": True},
+        {"show_blocks": True},
+        {"contour_interval": 5.0},
+        {"exaggeration": 2.0},
+        {"light_azimuth_deg": 120.0},
+        {"show_terrain": False},
+        {"show_skirt": False},
+        {"show_sky": False},
+        {"fog": False},
+    ],
+)
+def test_every_option_changes_the_picture(hilly: Heightfield, make_stage: Callable, option: dict) -> None:
+    stage = make_stage(hilly, (320, 200))
+    camera = Camera((0.0, 40.0, 0.0), 2800.0, 0.9, math.radians(20.0))
+    plain = stage.draw(FrameInputs(camera))
+    other = stage.draw(FrameInputs(camera, options=RenderOptions(**option)))
+
+    assert (plain != other).any(axis=2).mean() > 0.002
+
+
+def test_a_picture_may_change_its_size(
+    hilly: Heightfield, make_stage: Callable, ctx: moderngl.Context
+) -> None:
+    stage = make_stage(hilly, (320, 200))
+    stage.draw(FrameInputs(VIEWS[4]))
+    framebuffer = ctx.simple_framebuffer((200, 320))
+    stage.renderer.draw(framebuffer, (200, 320), FrameInputs(VIEWS[4]))
+
+    assert stage.renderer.read_pixels(framebuffer, (200, 320)).shape == (320, 200, 3)
+    framebuffer.release()
+
+
+def test_imagery_is_laid_north_side_up(hilly: Heightfield, make_stage: Callable) -> None:
+    imagery = np.zeros((64, 64, 3), dtype=np.uint8)
+    imagery[:32, :, 0], imagery[32:, :, 2] = 220, 220  # red south, blue north
+    stage = make_stage(hilly, imagery=imagery)
+    picture = stage.draw(
+        FrameInputs(Camera((0.0, 0.0, 0.0), 1500.0, 0.0, math.pi / 2), options=RenderOptions(**BARE))
+    )
+    north, south = picture[40:120].mean(axis=(0, 1)), picture[180:260].mean(axis=(0, 1))
+
+    assert north[2] > 2.0 * north[0]
+    assert south[0] > 2.0 * south[2]
