@@ -6,10 +6,10 @@ The source is a USGS digital elevation model (3 arc-seconds, whole metres, publi
 Mountains around the Jacksboro fault, Tennessee. Two things about it must be known:
 
 - Its rows run from north to south, and its `ymax` = 36.44625 is the northern edge. Its `ymin` = 36.73292 has
-  the sign of the height wrong: the southern edge is 36.15958. So placed, the gap of Big Creek lies at LaFollette
-  and the flat water in the south-east is Norris Lake.
+  the sign of the height wrong: the southern edge is 36.15958. So placed, the gap of Big Creek is at
+  LaFollette and the flat water in the south-east is Norris Lake.
 - Cells of 90 m close narrow creeks. From two places, the gap of Big Creek and the western foot of the hill
-  before it, the creek is cut along its lowest way to the edge of the model, as hydrologists do before they route
+  before it, the creek is cut along its lowest way to the edge of the model, as hydrologists do before routing
   water over such a model; the cuts are 21 m deep at most.
 
 The result is resampled (cubic) to 30 m in UTM zone 16N and stored as differences of decimetres.

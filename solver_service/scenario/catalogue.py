@@ -56,7 +56,7 @@ def case_summary(name: str | Path) -> CaseSummary:
         duration, interval = read_times(need(top, "run"))
         grid = planned_grid(folder) or read_case(folder).grid
         return CaseSummary(
-            name=str(name),
+            name=about.text("name", longest=64),
             title=about.text("title", about.text("name"), longest=200),
             hypothetical=about.flag("hypothetical"),
             nrows=grid.nrows,

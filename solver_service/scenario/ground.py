@@ -72,7 +72,7 @@ def read_ground_keys(terrain: Table, case: Table, cell_size: float | None) -> Gr
     native = terrain.number_or_none("cell_size", "a cell size in m from 0.001 to 100000", 1e-3, 1e5)
     return GroundKeys(
         table=terrain,
-        crs=case.text("crs") if case.has("crs") else None,
+        crs=case.text("crs", longest=200) if case.has("crs") else None,
         vertical_datum=case.text("vertical_datum", "", longest=200),
         cell_size=cell_size or native,
         native_size=native,

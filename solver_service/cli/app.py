@@ -1,0 +1,152 @@
+"""The commands of `fev-solver`, and how their failures end.
+
+A failure is one sentence on standard error and exit code 2. Libraries are imported inside the commands, so
+that `--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solver_service.errors import ServiceError
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="The flood solver of FEV: run a case, check it, or serve runs to viewers.",
+)
+
+CaseArgument = Annotated[
+    str, typer.Argument(metavar="CASE", help="Name of a case, or path of a folder, case file or .fevcase.")
+]
+DeviceOption = Annotated[str, typer.Option("--device", help="auto, cpu or cuda:N.")]
+ThreadsOption = Annotated[int | None, typer.Option("--threads", help="CPU threads; all cores by default.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="End with one JSON object on standard output.")]
+
+
+@app.command()
+def run(
+    case: CaseArgument,
+    until: Annotated[float | None, typer.Option("--until", help="Simulated time [s].")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder of the results.")] = None,
+    device: DeviceOption = "auto",
+    cell_size: Annotated[float | None, typer.Option("--cell-size", help="Cell size [m].")] = None,
+    threads: ThreadsOption = None,
+    json_line: JsonOption = False,
+    netcdf: Annotated[bool, typer.Option("--netcdf", help="Also write timesteps.nc.")] = False,
+    zarr: Annotated[bool, typer.Option("--zarr", help="Also write timesteps.zarr.")] = False,
+) -> None:
+    """Run a case without the web and write maps, gauges, sections and a summary."""
+    from solver_service.cli.run import run_offline
+    from solver_service.offline import OfflineOptions
+
+    options = OfflineOptions(until, out, device, threads, netcdf, zarr)
+    run_offline(case, options, cell_size, json_line)
+
+
+@app.command()
+def check(case: CaseArgument, device: DeviceOption = "auto", json_line: JsonOption = False) -> None:
+    """Look at a case: coordinates, units, holes, pits, inflows, memory and time."""
+    from solver_service.cli.check import check_and_tell
+
+    check_and_tell(case, device, json_line)
+
+
+@app.command("cases")
+def list_all(json_line: JsonOption = False) -> None:
+    """List the cases that have a name."""
+    from solver_service.cli.check import tell_cases
+
+    tell_cases(json_line)
+
+
+@app.command()
+def serve(
+    host: Annotated[str, typer.Option("--host", help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="TCP port; 0 picks one.")] = 0,
+    data_dir: Annotated[Path | None, typer.Option("--data-dir", help="Folder of the runs.")] = None,
+    token_file: Annotated[Path | None, typer.Option("--token-file", help="File with the token.")] = None,
+    ready_file: Annotated[
+        Path | None, typer.Option("--ready-file", help="File for the ready line as well.")
+    ] = None,
+    case: Annotated[
+        list[str] | None, typer.Option("--case", help="A case to offer beside the known; repeatable.")
+    ] = None,
+    device: DeviceOption = "auto",
+    threads: ThreadsOption = None,
+    stop_with_stdin: Annotated[
+        bool, typer.Option("--stop-with-stdin", help="End when standard input closes.")
+    ] = False,
+    allow_origin: Annotated[
+        list[str] | None, typer.Option("--allow-origin", help="A web origin to serve; repeatable.")
+    ] = None,
+) -> None:
+    """Serve runs to viewers until a signal stops it; writes one JSON line when it listens."""
+    from solver_service.cli.serve import serve_runs
+
+    serve_runs(
+        host=host,
+        port=port,
+        data_dir=data_dir,
+        token_file=token_file,
+        ready_file=ready_file,
+        cases=tuple(case or ()),
+        device=device,
+        threads=threads,
+        stop_with_stdin=stop_with_stdin,
+        allowed_origins=tuple(allow_origin or ()),
+    )
+
+
+@app.command()
+def export(
+    run_id: Annotated[str, typer.Argument(metavar="RUN", help="Id of a stored run.")],
+    out: Annotated[Path, typer.Option("--out", help="Folder of the results.")],
+    data_dir: Annotated[Path | None, typer.Option("--data-dir", help="Folder of the runs.")] = None,
+    zarr: Annotated[bool, typer.Option("--zarr", help="Zarr instead of NetCDF.")] = False,
+) -> None:
+    """Write the stored frames of a run, with its ancestors' past, as NetCDF or Zarr."""
+    from solver_service.cli.export import export_run
+
+    export_run(run_id, out, data_dir, zarr)
+
+
+@app.command()
+def warmup(device: DeviceOption = "auto") -> None:
+    """Compile the kernels for a device, so that the first run starts at once."""
+    from solver_service.cli.doctor import warm_up
+
+    warm_up(device)
+
+
+@app.command()
+def doctor(json_line: JsonOption = False) -> None:
+    """Tell versions, devices, memory and folders of this machine."""
+    from solver_service.cli.doctor import tell_machine
+
+    tell_machine(json_line)
+
+
+def main() -> None:
+    """Run the command line; never shows a traceback for what the user can mend."""
+    logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s", stream=sys.stderr)
+    try:
+        app()
+    except ServiceError as error:
+        print(f"fev-solver: {error}", file=sys.stderr)
+        sys.exit(BAD_INPUT)
+    except KeyboardInterrupt:
+        print("fev-solver: stopped.", file=sys.stderr)
+        sys.exit(INTERRUPTED)
+    except BrokenPipeError:
+        sys.stderr.close()
+        sys.exit(1)

@@ -1,0 +1,72 @@
+"""`fev-solver run`: a progress bar on a terminal, then a table or one line of JSON."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import Any
+
+from solver_service.offline import OfflineOptions, run_case
+from solver_service.scenario import load_case
+
+ROWS = (
+    ("cells", "cells", "{:,.0f}"),
+    ("steps", "steps", "{:,.0f}"),
+    ("simulated time", "sim_time_s", "{:,.0f} s"),
+    ("wall time", "wall_s", "{:,.1f} s"),
+    ("faster than real time", "speed_x_real_time", "{:,.1f} x"),
+    ("cell-steps a second", "cell_steps_per_s", "{:,.0f}"),
+    ("water volume error", "volume_error_relative", "{:.1e}"),
+    ("largest depth", "max_depth_m", "{:.1f} m"),
+    ("largest speed", "max_speed_m_s", "{:.1f} m/s"),
+    ("device", "device", "{}"),
+)
+
+
+def run_offline(name: str, options: OfflineOptions, cell_size: float | None, json_line: bool) -> None:
+    """Run a case and tell its figures.
+
+    Args:
+        name: name or path of the case.
+        options: how it is run.
+        cell_size: cell size instead of the case's [m].
+        json_line: end with a JSON object instead of a table.
+
+    Raises:
+        ServiceError: the case, an option, the device or the output is not usable.
+    """
+    import warp as wp
+
+    wp.config.log_level = wp.LOG_ERROR
+    case = load_case(name, cell_size)
+    summary = _with_progress(case.title, lambda on_frame: run_case(case, options, on_frame))
+    if json_line:
+        print(json.dumps(summary), flush=True)
+        return
+    _tell(summary)
+    if options.out is not None:
+        print(f"results in {options.out}")
+
+
+def _with_progress(title: str, job: Any) -> dict[str, Any]:
+    """Do the job with a progress bar on standard error where that is a terminal."""
+    if not sys.stderr.isatty():
+        result: dict[str, Any] = job(None)
+        return result
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"))
+    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True)) as progress:
+        task = progress.add_task(title, total=None)
+        result = job(lambda time, until: progress.update(task, completed=time, total=until))
+        return result
+
+
+def _tell(summary: dict[str, Any]) -> None:
+    mark = " (hypothetical)" if summary["hypothetical"] else ""
+    print(f"{summary['title']}{mark}")
+    for label, key, form in ROWS:
+        print(f"  {label:<24}{form.format(summary[key])}")
+    if summary["licence"]:
+        print(f"  {'data':<24}{summary['source']}; licence: {summary['licence']}")

@@ -1,0 +1,135 @@
+"""A look at a case before it is run: what stands in it, what is odd, and what it will cost."""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver_service.numerics import ShallowWaterSolver, pick_device
+from solver_service.scenario import Case
+
+PROBE_S = 2.0
+"""Wall time for which the solver is tried [s]."""
+DEEP_PIT = 5.0
+"""A single cell this much lower than all its neighbours [m] is told as odd."""
+
+
+@dataclass
+class CaseReport:
+    """What a check found.
+
+    Attributes:
+        facts: name and value, for people.
+        warnings: one sentence each.
+        figures: numbers, for programs.
+    """
+
+    facts: list[tuple[str, str]] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    figures: dict[str, float | int | str] = field(default_factory=dict)
+
+
+def check_case(case: Case, device: str = "auto") -> CaseReport:
+    """Look at a case and try its solver for two seconds.
+
+    Args:
+        case: the case.
+        device: where it would run.
+
+    Raises:
+        ServiceError: the device is absent, or the run blows up at once.
+    """
+    report = CaseReport()
+    _look_at_ground(case, report)
+    _look_at_water(case, report)
+    _try_solver(case, pick_device(device), report)
+    return report
+
+
+def _look_at_ground(case: Case, report: CaseReport) -> None:
+    grid, z = case.grid, case.z_b.astype(np.float64) + case.grid.datum_offset
+    blocked = case.model.blocked if case.model.blocked is not None else np.zeros(grid.shape, bool)
+    xmin, ymin, xmax, ymax = grid.extent
+    low, high = float(z[~blocked].min()), float(z[~blocked].max())
+    pits, deepest = _pits(z, blocked)
+    report.facts += [
+        ("coordinates", f"{grid.crs}, metres"),
+        ("vertical datum", f"{grid.vertical_datum or 'not said'} (stored from {grid.datum_offset:g} m)"),
+        ("cells", f"{grid.nrows} x {grid.ncols} = {grid.cell_count} of {grid.dx:g} m"),
+        ("extent", f"x {xmin:.10g} to {xmax:.10g} m, y {ymin:.10g} to {ymax:.10g} m"),
+        ("elevation", f"{low:.2f} to {high:.2f} m"),
+        ("cells without data", f"{case.nodata_count} ({int(blocked.sum())} walls)"),
+        ("single-cell pits", f"{pits}, the deepest {deepest:.2f} m"),
+    ]
+    report.figures.update(
+        cells=grid.cell_count, nodata=case.nodata_count, pits=pits, elevation_min_m=low, elevation_max_m=high
+    )
+    if deepest > DEEP_PIT:
+        report.warnings.append(f"A single cell lies {deepest:.1f} m below all its neighbours.")
+    if high - low > 9000.0:
+        report.warnings.append(f"The ground spans {high - low:.0f} m; is the unit really metres?")
+    if not grid.vertical_datum:
+        report.warnings.append("[case] vertical_datum does not say what elevation 0 is.")
+
+
+def _pits(z: NDArray[np.float64], blocked: NDArray[np.bool_]) -> tuple[int, float]:
+    """Number of cells lower than all eight neighbours, and how far the deepest lies below them."""
+    from scipy import ndimage
+
+    ring = np.ones((3, 3), bool)
+    ring[1, 1] = False
+    lowest_near = ndimage.minimum_filter(np.where(blocked, np.inf, z), footprint=ring, mode="nearest")
+    depth = np.where(blocked | ~np.isfinite(lowest_near), 0.0, lowest_near - z)
+    inner = depth[1:-1, 1:-1]
+    if inner.size == 0:
+        return 0, 0.0
+    return int(np.count_nonzero(inner > 0.0)), float(max(inner.max(), 0.0))
+
+
+def _look_at_water(case: Case, report: CaseReport) -> None:
+    area = case.grid.dx**2
+    volume = float(case.initial_h.sum(dtype=np.float64)) * area
+    edges = sorted({boundary.edge for boundary in case.model.boundaries if boundary.kind == "open"})
+    report.facts += [
+        ("water at the start", f"{volume:.6g} m3, up to {float(case.initial_h.max()):.2f} m deep"),
+        ("inflows", f"{len(case.model.sources)}" + (", rain" if case.model.rain is not None else "")),
+        ("open edges", ", ".join(edges) or "none (walls all around)"),
+        ("gauges, sections", f"{len(case.gauges)}, {len(case.sections)}"),
+        ("run", f"{case.duration:g} s, a frame every {case.output_interval:g} s"),
+    ]
+    report.figures["volume_initial_m3"] = volume
+    if volume == 0.0 and not case.model.sources and case.model.rain is None:
+        report.warnings.append("There is no water: no [initial], no [[source]] and no [rain].")
+    for number, source in enumerate(case.model.sources, start=1):
+        on_edge = (source.rows == 0) | (source.rows == case.grid.nrows - 1)
+        on_edge |= (source.cols == 0) | (source.cols == case.grid.ncols - 1)
+        if on_edge.any():
+            report.warnings.append(f"[[source]] number {number} touches the edge of the terrain.")
+    if case.model.blocked is not None:
+        for gauge in case.gauges:
+            row, col = (round(part) for part in case.grid.to_cell(gauge.x, gauge.y))
+            if case.model.blocked[min(row, case.grid.nrows - 1), min(col, case.grid.ncols - 1)]:
+                report.warnings.append(f"Gauge '{gauge.id}' stands on a cell without data.")
+
+
+def _try_solver(case: Case, device: str, report: CaseReport) -> None:
+    import psutil
+
+    process = psutil.Process()
+    before = process.memory_info().rss
+    solver = ShallowWaterSolver(case.model, case.params, device)
+    solver.set_water(case.initial_h)
+    solver.advance_to(min(1e-3, case.duration))
+    began, start = clock.perf_counter(), solver.time
+    solver.advance_to(case.duration, lambda: clock.perf_counter() - began > PROBE_S)
+    wall, simulated = clock.perf_counter() - began, solver.time - start
+    memory = max(process.memory_info().rss - before, 0)
+    estimate = wall * case.duration / simulated if simulated > 0.0 else float("inf")
+    report.facts += [
+        ("memory of the solver", f"about {memory / 2**20:.0f} MiB on {device}"),
+        ("time to run", f"about {estimate:.0f} s, judged by the first {simulated:.1f} s of the flood"),
+    ]
+    report.figures.update(memory_bytes=memory, run_time_s=estimate, device=device)
