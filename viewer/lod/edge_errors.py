@@ -1,9 +1,10 @@
 """What fitting an edge to a coarser neighbour costs, ahead of time.
 
-Where a block of level l meets a neighbour of level L > l, the vertices on the shared edge slide to those that
-the neighbour has, and the strip of squares along the edge is split into other triangles than level l has. The
-error of that strip belongs to no level of either block, so it is charged to the neighbour: a level L of block n
-is allowed only where, in each block b beside it, the strip is within the bound too, whatever level b then has.
+Where a block of level l meets a neighbour of level L > l, the vertices on the shared edge slide to those
+that the neighbour has, and the strip of squares along the edge is split into other triangles than level l
+has. The error of that strip belongs to no level of either block, so it is charged to the neighbour: a level
+L of block n is allowed only where, in each block b beside it, the strip is within the bound too, whatever
+level b then has.
 
 With strip(l, L) the error of b's strip and e_b the errors of b itself, b has level l while
 e_b[l] <= x < e_b[l + 1], where x is the error that the screen allows. The charge for L is the least x from
@@ -44,7 +45,7 @@ def edge_errors(z: Array, tiling: BlockTiling, errors: Array) -> Array:
     with ThreadPoolExecutor(max_workers=2) as pool:
         rows = pool.submit(_charges, along, tiling, monotone)
         cols = pool.submit(_charges, across, turned, np.ascontiguousarray(monotone.transpose(0, 2, 1)))
-        return np.maximum(rows.result(), cols.result().transpose(0, 2, 1))
+        return np.asarray(np.maximum(rows.result(), cols.result().transpose(0, 2, 1)), dtype=np.float32)
 
 
 def _charges(z: Array, tiling: BlockTiling, monotone: Array) -> Array:

@@ -34,8 +34,8 @@ def screen_error_factor(pitch: float, fov_y: float, aspect: float) -> float:
     """Upper bound of the screen length of a vertical unit, relative to one seen square-on.
 
     In eye space a vertical displacement is (0, cos p, sin p). It moves a projected point at depth z by at
-    most sqrt((cos p + tan_y sin p)^2 + (tan_x sin p)^2) / z, with tan_x and tan_y those of the picture's corner,
-    and z is at least the distance times the cosine of the corner's angle off axis.
+    most sqrt((cos p + tan_y sin p)^2 + (tan_x sin p)^2) / z, with tan_x and tan_y those of the picture's
+    corner, and z is at least the distance times the cosine of the corner's angle off axis.
 
     Args:
         pitch: angle of the view direction below the horizon [rad].

@@ -47,15 +47,15 @@ def test_strips_are_those_of_the_triangles_drawn(
 
 
 def test_a_flat_block_beside_a_steep_one_is_charged_for_the_shared_strip() -> None:
-    # Flat up to the shared edge; behind it waves that grow with the distance from the edge.
-    rows, behind = np.meshgrid(np.arange(33), np.maximum(np.arange(65) - 32, 0), indexing="ij")
+    # Flat up to the shared edge; behind it waves that grow over the first columns.
+    rows, behind = np.meshgrid(np.arange(33), np.clip(np.arange(65) - 32, 0, 4), indexing="ij")
     z = (3.0 * behind * np.sin(2.0 * np.pi * rows / 16.0)).astype(np.float32)
     tiling = BlockTiling(33, 65)
     errors = block_errors(z, tiling)
     charges = edge_errors(z, tiling, errors)
 
     assert errors[:, 0, 0].max() == 0.0
-    assert charges[4, 0, 0] > 1.0
+    assert charges[4, 0, 0] > 0.5
     assert charges[:, 0, 1].max() == 0.0
 
 

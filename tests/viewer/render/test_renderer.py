@@ -252,15 +252,22 @@ def lake(field: Heightfield, level: float) -> np.ndarray:
     return np.maximum(level - field.z_b, 0.0).astype(np.float32)
 
 
+def drawn_heights(stage) -> np.ndarray:
+    """World height of what is drawn at each pixel [m], lowest row first."""
+    depth, back = stage.renderer.read_depth()
+    rows, cols = np.mgrid[: depth.shape[0], : depth.shape[1]]
+    return back.world(cols, rows, depth)[..., 1]
+
+
 def wet_pixels(stage, field: Heightfield, h: np.ndarray, camera: Camera, **options: object) -> tuple:
     """Where water lies before the ground, and the greatest and least depth of the cells around each pixel."""
     plain = {**BARE, **options}
     stage.draw(FrameInputs(camera, options=RenderOptions(**plain)))
-    ground, _ = stage.renderer.read_depth()
+    ground = drawn_heights(stage)
     frame = WaterFrame("lake", h)
     stage.draw(FrameInputs(camera, WaterPair(frame, frame), options=RenderOptions(**plain)))
     depth, back = stage.renderer.read_depth()
-    changed = depth < ground - 2e-7
+    changed = drawn_heights(stage) > ground + 0.05
     rows, cols = np.mgrid[: depth.shape[0], : depth.shape[1]]
     world = back.world(cols, rows, depth)
     grid = field.grid
@@ -287,9 +294,9 @@ def test_water_shows_where_cells_are_wet_and_nowhere_else(hilly: Heightfield, ma
     h = lake(hilly, -10.0)
     for camera in (overview(3210.0, 2570.0, 20.0), Camera((0.0, 0.0, 0.0), 900.0, 0.9, math.radians(50.0))):
         shown, deepest_near, shallowest_near = wet_pixels(stage, hilly, h, camera, full_mesh=True)
-        assert 0.1 < shown.mean() < 0.9
+        assert 0.05 < shown.mean() < 0.9
         assert not (shown & (deepest_near == 0.0)).any()
-        assert shown[shallowest_near > 0.3].mean() > 0.999
+        assert shown[shallowest_near > 0.5].mean() > 0.999
 
 
 def test_water_that_is_not_there_fails_that_test(hilly: Heightfield, make_stage: Callable) -> None:
