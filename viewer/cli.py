@@ -26,7 +26,12 @@ EXIT_REFUSED = 2
 DEMO_CASE = "jacksboro"
 WS_SCHEMES = ("ws://", "wss://")
 
-application = typer.Typer(add_completion=False, pretty_exceptions_enable=False, help=__doc__)
+application = typer.Typer(
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # or the unit in "[s]" would be taken for markup
+    help=f"{__doc__}".replace("\n\n", "\n\n\b\n"),  # \b keeps the lines of the table apart
+)
 
 
 @application.command("view", help="Look at a service, or start one on this machine.")

@@ -22,6 +22,7 @@ app = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # or the unit in "[s]" would be taken for markup
     help="The flood solver of FEV: run a case, check it, or serve runs to viewers.",
 )
 
