@@ -131,3 +131,34 @@ def test_python_in_the_pages_is_python() -> None:
             ast.parse(text)
         except SyntaxError as error:
             pytest.fail(f"{relative(path)}: {error}")
+
+
+def test_the_case_of_the_how_to_page_can_be_loaded(tmp_path: Path) -> None:
+    import numpy as np
+    import rasterio
+    from rasterio.transform import from_origin
+
+    from solver_service.scenario import load_case
+
+    page = REPOSITORY / "docs" / "how_to" / "bring_a_dem.md"
+    ((_, case_file),) = [block for block in blocks("toml") if block[0] == page]
+    (tmp_path / "case.toml").write_text(case_file, encoding="utf-8")
+    east = np.arange(200, dtype=np.float32)
+    valley = np.broadcast_to(320.0 - 0.2 * east, (100, 200)).astype(np.float32)
+    with rasterio.open(
+        tmp_path / "bed.tif",
+        "w",
+        driver="GTiff",
+        height=100,
+        width=200,
+        count=1,
+        dtype="float32",
+        crs="EPSG:32617",
+        transform=from_origin(700_000.0, 4_001_000.0, 10.0, 10.0),
+    ) as raster:
+        raster.write(valley, 1)
+
+    case = load_case(tmp_path / "case.toml")
+
+    assert case.grid.shape == (100, 200)
+    assert case.initial_h.max() > 1.0
