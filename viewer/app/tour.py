@@ -86,8 +86,8 @@ def fly_tour(session: HeadlessSession, started: float, settings: TourSettings | 
     first_run = _shown(app).run
     session.paint()
     _watch(session, settings)
-    levee, drawn_at, compared_at = _plan(session)
-    view = _view_of(app, levee)
+    levee, drawn_at, compared_at, source = _plan(session)
+    view = _view_of(app, levee, source)
     app.carry_out(Pause())
     app.carry_out(view)
     app.carry_out(Seek(compared_at))
@@ -164,8 +164,8 @@ def _fly_to_front(session: HeadlessSession, seconds: float) -> None:
     app.carry_out(FlyTo(x, y, _distance(shown), (bearing + 150.0) % 360.0, 32.0, seconds))
 
 
-def _plan(session: HeadlessSession) -> tuple[LeveeLine, float, float]:
-    """Return the levee, the time at which it is drawn and the time of comparison [s]."""
+def _plan(session: HeadlessSession) -> tuple[LeveeLine, float, float, tuple[float, float]]:
+    """Return the levee, when it is drawn and when compared [s], and where the front is when it is drawn."""
     shown = _shown(session.app)
     last = shown.timeline.index_before(shown.timeline.last_time)
     fronts = [
@@ -173,20 +173,22 @@ def _plan(session: HeadlessSession) -> tuple[LeveeLine, float, float]:
     ]
     if len(fronts) < 4:
         raise HeadlessError("the water reached no new ground, so there is no front to put a levee before")
-    drawn, met = fronts[len(fronts) // 3], fronts[max(len(fronts) // 2, 2)]
-    ahead, behind = fronts[min(len(fronts) // 2 + 1, len(fronts) - 1)], fronts[len(fronts) // 2 - 1]
-    heading = (ahead[1].row - behind[1].row, ahead[1].col - behind[1].col)
-    if math.hypot(*heading) < 1e-6:
-        heading = (met[1].row - drawn[1].row + 1e-6, met[1].col - drawn[1].col)
-    place = (met[1].row, met[1].col)
-    levee = place_levee(shown.grid, shown.document.base, place, heading, _depth(session, last))
-    return levee, shown.timeline.time_of(drawn[0]), shown.timeline.time_of(last)
+    drawn, front = fronts[len(fronts) // 3]
+    source = (front.row, front.col)
+    ahead = [(at.row, at.col) for index, at in fronts if drawn < index <= drawn + 2 * (last - drawn) // 3]
+    bed, later = shown.document.base, _depth(session, last)
+    levee = place_levee(shown.grid, bed, ahead, _depth(session, drawn), later)
+    if levee is None:
+        raise HeadlessError("there is no place ahead of the front where a levee could hold the water")
+    return levee, shown.timeline.time_of(drawn), shown.timeline.time_of(last), source
 
 
-def _view_of(app: ViewerApp, levee: LeveeLine) -> FlyTo:
-    shown = _shown(app)
-    distance = max(2.2 * levee.length, 0.6 * _distance(shown))
-    return FlyTo(*levee.middle, distance, (levee.bearing + 155.0) % 360.0, 36.0, 0.0)
+def _view_of(app: ViewerApp, levee: LeveeLine, source: tuple[float, float]) -> FlyTo:
+    """Return the view of the levee from its dry side, towards the (row, col) the water comes from."""
+    distance = max(2.2 * levee.length, 0.9 * _distance(_shown(app)))
+    front = _shown(app).grid.center(*source)
+    bearing = math.degrees(math.atan2(front[0] - levee.middle[0], front[1] - levee.middle[1]))
+    return FlyTo(*levee.middle, distance, (bearing + 25.0) % 360.0, 36.0, 0.0)
 
 
 def _draw(session: HeadlessSession, levee: LeveeLine) -> None:
@@ -251,7 +253,7 @@ def _front_at(session: HeadlessSession, index: int) -> Front | None:
 
 
 def _distance(shown: ShownRun) -> float:
-    return 0.22 * math.hypot(shown.grid.nrows, shown.grid.ncols) * shown.grid.dx
+    return 0.16 * math.hypot(shown.grid.nrows, shown.grid.ncols) * shown.grid.dx
 
 
 def _changed_share(before: Pixels, after: Pixels) -> float:
