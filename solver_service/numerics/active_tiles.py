@@ -9,8 +9,8 @@ import warp as wp
 from solver_service.numerics.fields import TILE, Fields, FieldStore
 from solver_service.numerics.tile_kernels import classify_tiles, list_active_tiles
 
-REFRESH_STEPS = 16
-"""Steps for which a list stays valid; less than the cells on a tile's side, and even (see `kernel_engine`)."""
+REFRESH_STEPS = 4
+"""Steps for which a list stays valid: half a tile at two cells a step; even (see `kernel_engine`)."""
 
 
 class ActiveTiles:
@@ -33,42 +33,61 @@ class ActiveTiles:
         forced_tiles = np.zeros(count, np.int32)
         forced_tiles[(rows // TILE) * self.cols + cols // TILE] = 1
         self._forced = wp.array(forced_tiles, dtype=wp.int32, device=store.device)
-        self._wet = wp.zeros(count, dtype=wp.int32, device=store.device)
+        self._quadrants = wp.zeros(count, dtype=wp.int32, device=store.device)
+        self._tile_wave = wp.zeros(count, dtype=wp.float32, device=store.device)
+        self.rest_wave = wp.zeros(2, dtype=wp.float32, device=store.device)
+        self._is_first = wp.zeros(2, dtype=wp.int32, device=store.device)
         self.active = wp.zeros(count, dtype=wp.int32, device=store.device)
         self.tiles = wp.zeros(count, dtype=wp.int32, device=store.device)
         self.count = wp.zeros(1, dtype=wp.int32, device=store.device)
 
-    def reset(self) -> None:
-        """Look at every tile at the next refresh."""
-        self.active.fill_(1)
+    def begin_interval(self) -> None:
+        """Let the next list depend on the present state alone."""
+        self._is_first.fill_(1)
 
-    def refresh(self, fields: Fields) -> None:
-        """Renew the list from the state `h`, `u`, `v` of `fields`."""
+    def refresh(self, fields: Fields, record: bool = False) -> list[wp.Launch]:
+        """Renew the list from the state `h`, `u`, `v` of `fields`, or record the launches that do so."""
         store = self._store
-        wp.launch(
-            classify_tiles,
-            dim=self._wet.shape[0],
-            inputs=[fields.h, self._depth_film, store.nrows, store.ncols, self.cols, self.active],
-            outputs=[self._wet, self.count],
-            device=store.device,
-        )
-        wp.launch(
-            list_active_tiles,
-            dim=self._wet.shape[0],
-            inputs=[
-                fields.h,
-                fields.u,
-                fields.v,
-                self._wet,
-                self._forced,
-                store.nrows,
-                store.ncols,
-                self.rows,
-                self.cols,
-            ],
-            outputs=[fields.h_out, fields.u_out, fields.v_out, self.active, self.tiles, self.count],
-            device=store.device,
-        )
+        state = [fields.h, fields.u, fields.v]
+        launches = [
+            wp.launch(
+                classify_tiles,
+                dim=self.rows * self.cols,
+                inputs=[
+                    *state,
+                    fields.h_out,
+                    self._depth_film,
+                    store.nrows,
+                    store.ncols,
+                    self.cols,
+                    self.active,
+                    self._forced,
+                    self._is_first,
+                ],
+                outputs=[self._quadrants, self.count, self.rest_wave],
+                device=store.device,
+                record_cmd=record,
+            ),
+            wp.launch(
+                list_active_tiles,
+                dim=self.rows * self.cols,
+                inputs=[*state, self._quadrants, store.nrows, store.ncols, self.rows, self.cols],
+                outputs=[
+                    fields.h_out,
+                    fields.u_out,
+                    fields.v_out,
+                    self.active,
+                    self.tiles,
+                    self.count,
+                    self._is_first,
+                    self._tile_wave,
+                    self.rest_wave,
+                ],
+                device=store.device,
+                record_cmd=record,
+            ),
+        ]
+        return [launch for launch in launches if launch is not None]
 
     def mask(self) -> npt.NDArray[np.bool_]:
         """Active tiles, [tile rows, tile columns]."""

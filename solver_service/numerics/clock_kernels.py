@@ -51,17 +51,19 @@ def begin_step(
     dt_max: wp.float64,
     dt_min: wp.float64,
     # outputs
+    rest_wave: wp.array(dtype=wp.float32),
     wave_slots: wp.array(dtype=wp.float32),
     clock: wp.array(dtype=wp.float64),
     counts: wp.array(dtype=wp.int32),
 ):
-    """Set dt from the slots' largest wave speed and move the clock; dt = 0 once the target is reached."""
+    """Set dt from the largest wave speed of the slots and of sleeping tiles, and move the clock; dt = 0 once the target is reached."""
     time = clock[CLOCK_TIME]
     target = clock[CLOCK_TARGET]
     clock[CLOCK_DT] = wp.float64(0.0)
     clock[CLOCK_BEFORE] = time
     if time < target and counts[COUNT_FAILED] == 0:
-        wave = float(0.0)
+        wave = wp.max(rest_wave[0], rest_wave[1])
+        rest_wave[1] = 0.0
         for k in range(wave_slots.shape[0]):
             wave = wp.max(wave, wave_slots[k])
         stable = dt_max

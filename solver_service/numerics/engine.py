@@ -34,7 +34,7 @@ class StepParts:
 
 
 class Engine(ABC):
-    """Takes steps. Time is float64; `wave_speed` is that of the present state and decides the next step."""
+    """Takes steps. Time is float64; `wave_speed` is that of the active tiles after the last step."""
 
     def __init__(self, parts: StepParts) -> None:
         self.parts = parts
@@ -50,10 +50,6 @@ class Engine(ABC):
         Raises:
             StepCollapse: when stability asks for a step below `dt_min`.
         """
-
-    @abstractmethod
-    def state_changed(self) -> None:
-        """Take note that water or bed were set from outside."""
 
 
 class StepCollapse(Exception):

@@ -13,7 +13,7 @@ import warp as wp
 GHOSTS = 2
 """Ghost cells on each side."""
 
-TILE = 32
+TILE = 16
 """Side of a compute tile [cells]."""
 
 NEVER = 3.0e38

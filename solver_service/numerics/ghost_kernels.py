@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import warp as wp
 
-from solver_service.numerics.fields import GHOSTS, FloatRaster
+from solver_service.numerics.fields import GHOSTS, TILE, FloatRaster
 from solver_service.numerics.warp_modules import SUPPORT_MODULE
 
 WALL = 0
@@ -87,6 +87,14 @@ def ghost_cells(nrows: int, ncols: int) -> npt.NDArray[np.int32]:
     ring = np.ones((nrows + 2 * GHOSTS, ncols + 2 * GHOSTS), bool)
     ring[GHOSTS:-GHOSTS, GHOSTS:-GHOSTS] = False
     return np.flatnonzero(ring).astype(np.int32)
+
+
+def ghost_tiles(ghosts: npt.NDArray[np.int32], nrows: int, ncols: int) -> npt.NDArray[np.int64]:
+    """Compute tile, row-major, that each ghost cell lies at."""
+    rows, cols = np.divmod(ghosts, ncols + 2 * GHOSTS)
+    tile_rows = np.clip(rows - GHOSTS, 0, nrows - 1) // TILE
+    tile_cols = np.clip(cols - GHOSTS, 0, ncols - 1) // TILE
+    return (tile_rows * -(-ncols // TILE) + tile_cols).astype(np.int64)
 
 
 def pad_bed(z_b: FloatRaster, kinds: npt.NDArray[np.int32]) -> FloatRaster:

@@ -1,6 +1,6 @@
 """Steps by Warp kernels alone: the engine of CUDA devices, and the oracle of the row engine on the CPU.
 
-Sixteen steps follow one refresh of the tile list; this body is repeated while the device's own clock is short of the
+Four steps follow one refresh of the tile list; this body is repeated while the device's own clock is short of the
 target (`wp.capture_while`; on CUDA captured once as a graph, so that the host waits for nothing in between). Steps
 after the landing find dt = 0 and copy the state, so that the body always ends in the buffer it began with.
 """
@@ -50,13 +50,10 @@ class KernelEngine(Engine):
         self._threads = CUDA_THREADS if self._is_cuda else CPU_THREADS
         self._graph: wp.Graph | None = None
 
-    def state_changed(self) -> None:
-        """Refresh every tile before the next step."""
-        self.parts.tiles.reset()
-
     def advance(self, target: float, should_stop: StopQuestion | None) -> bool:
         """See `Engine.advance`; `should_stop` is asked every `DRAIN_STEPS` steps."""
         self._upload(target)
+        self.parts.tiles.begin_interval()
         while self.time < target:
             if should_stop is not None and should_stop():
                 return False
@@ -120,7 +117,7 @@ class KernelEngine(Engine):
             begin_step,
             dim=1,
             inputs=[parts.courant, parts.dt_max, parts.dt_min],
-            outputs=[self._wave_slots, self._clock, self._counts],
+            outputs=[parts.tiles.rest_wave, self._wave_slots, self._clock, self._counts],
             device=device,
         )
         wp.launch(

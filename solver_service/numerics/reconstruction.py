@@ -12,6 +12,10 @@ than the rounding of the depths it is made of (`LEVEL_TOLERANCE`): a float32 lak
 nothing that float32 depths can express is lost. A cell no deeper than `depth_dry` carries no momentum and has no
 slopes.
 
+Velocity slopes fade between bed slopes of 0.2 and 0.6 to the next cell: on banks that steep shallow-water theory no
+longer holds, and linear velocities beside a bank of raster steps tear the flow off it. In the gorge of Malpasset that
+costs a tenth of the discharge and raises the water by 6 m above the observed mark; gentle beds see no difference.
+
 The depth that leaves through the four faces in one step must not exceed h. The flux that a face may draw from its
 donor is capped by a share of its depth that the donor alone decides (`share`): with the outflow bounds
 B_f = h_f max(u_f + c, 0) of its faces, face f may draw share B_f, share = min(1, 0.999 h dx / (dt sum B_f)). This is a
@@ -31,6 +35,12 @@ LEVEL_TOLERANCE = wp.constant(1.5e-7)
 Rounding alone gives less than 2^-23 = 1.2e-7. A larger tolerance would hold small slopes fast: with 4.8e-7 the
 measured order in smooth flow falls from 1.96 to 1.78.
 """
+
+SLOPE_STEEP = wp.constant(0.6)
+"""Bed slope from which on velocities are constant in a cell [1]."""
+
+SLOPE_WEIGHT = wp.constant(2.5)
+"""Inverse of the range of bed slopes, 0.2 to 0.6, over which their slopes fade [1]."""
 
 DRAIN_LIMIT = wp.constant(0.999)
 """Part of a cell's water that may leave in one step [1]; the rest is room for rounding."""
@@ -90,13 +100,16 @@ def predict(
     `drag` is g n^2 [m^(1/3)], `hancock` is 1 for second order in time and 0 for none.
     """
     t = wp.where(h > depth_dry, theta, 0.0)
+    step = wp.max(wp.max(wp.abs(z_w - z), wp.abs(z_e - z)), wp.max(wp.abs(z_s - z), wp.abs(z_n - z)))
+    gentle = wp.max(wp.min((SLOPE_STEEP - step / dx) * SLOPE_WEIGHT, 1.0), 0.0)
+    t_u = gentle * t
     h_x = limited_slope(h - h_w, h_e - h, t)
-    u_x = limited_slope(u - u_w, u_e - u, t)
-    v_x = limited_slope(v - v_w, v_e - v, t)
+    u_x = limited_slope(u - u_w, u_e - u, t_u)
+    v_x = limited_slope(v - v_w, v_e - v, t_u)
     e_x = limited_slope(surface_step(h_w, h, z_w, z), surface_step(h, h_e, z, z_e), t)
     h_y = limited_slope(h - h_s, h_n - h, t)
-    u_y = limited_slope(u - u_s, u_n - u, t)
-    v_y = limited_slope(v - v_s, v_n - v, t)
+    u_y = limited_slope(u - u_s, u_n - u, t_u)
+    v_y = limited_slope(v - v_s, v_n - v, t_u)
     e_y = limited_slope(surface_step(h_s, h, z_s, z), surface_step(h, h_n, z, z_n), t)
 
     k = hancock * half_dt / dx

@@ -26,12 +26,15 @@ from solver_service.numerics.clock_kernels import (
 )
 from solver_service.numerics.device import warm_kernels
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
-from solver_service.numerics.ghost_kernels import fill_ghost_cells, ghost_cells
+from solver_service.numerics.ghost_kernels import fill_ghost_cells, ghost_cells, ghost_tiles
 from solver_service.numerics.row_kernels import CHUNK_COLS, SCRATCH_ROWS, step_chunks
 
 LOG = logging.getLogger(__name__)
 
 SCRATCH_PITCH = CHUNK_COLS + 16
+
+FIRST_PARAMETER, DT_PARAMETER, TIME_PARAMETER = 3, 7, 8
+"""Places of `first`, `dt` and `time` among the arguments of `step_chunks`."""
 
 
 @functools.cache
@@ -63,48 +66,57 @@ class RowEngine(Engine):
         self._all_ghosts = ghost_cells(store.nrows, store.ncols)
         self._scratch_size = SCRATCH_ROWS * SCRATCH_PITCH
         self._scratch = wp.zeros(threads * self._scratch_size, dtype=wp.float32, device="cpu")
-        self._steps_to_refresh = 0
+        tile_limit = parts.tiles.rows * parts.tiles.cols
+        self._chunks = wp.zeros(4 * tile_limit, dtype=wp.int32, device="cpu")
+        self._waves = wp.zeros(tile_limit, dtype=wp.float32, device="cpu")
+        self._ghosts = wp.zeros(self._all_ghosts.size, dtype=wp.int32, device="cpu")
+        self._ghost_tiles = ghost_tiles(self._all_ghosts, store.nrows, store.ncols)
         self._mask: npt.NDArray[np.bool_] | None = None
-        self._launches: tuple[list[wp.Launch], list[wp.Launch]] = ([], [])
-        self._ghost_launches: list[wp.Launch] = []
-        self._waves = np.zeros(0, np.float32)
-
-    def state_changed(self) -> None:
-        """Refresh every tile before the next step."""
-        self.parts.tiles.reset()
-        self._steps_to_refresh = 0
+        self._ghost_count = 0
+        self._rest_wave = self._waking_wave = 0.0
+        self._shares: list[tuple[int, int]] = []
+        self._chunk_waves = np.zeros(0, np.float32)
+        self._refreshes = [parts.tiles.refresh(fields, record=True) for fields in store.fields]
+        self._ghost_launches = [self._record_ghosts(parity) for parity in (0, 1)]
+        self._sweeps = [
+            [self._record_sweep(parity, thread) for thread in range(threads)] for parity in (0, 1)
+        ]
 
     def advance(self, target: float, should_stop: StopQuestion | None) -> bool:
-        """See `Engine.advance`; `should_stop` is asked before every step."""
+        """See `Engine.advance`; `should_stop` is asked whenever the tile list is renewed."""
+        self.parts.tiles.begin_interval()
         while self.time < target:
             if should_stop is not None and should_stop():
                 return False
-            self._step(target)
+            self._refresh()
+            for _ in range(REFRESH_STEPS):
+                if self.time < target:
+                    self._step(target)
         return True
 
     def _step(self, target: float) -> None:
         parts = self.parts
         store = parts.store
-        dt, after, stable = choose_dt(self.time, target, self.wave_speed, parts.courant, parts.dt_max)
+        wave = max(self.wave_speed, self._rest_wave, self._waking_wave)
+        self._waking_wave = 0.0
+        dt, after, stable = choose_dt(self.time, target, wave, parts.courant, parts.dt_max)
         if stable < parts.dt_min:
             raise StepCollapse
-        if self._steps_to_refresh == 0:
-            self._refresh()
-        self._steps_to_refresh -= 1
         parity = store.parity
-        self._ghost_launches[parity].launch()
-        launches = self._launches[parity]
-        for launch in launches:
-            launch.set_param_at_index(7, dt)
-            launch.set_param_at_index(8, after)
-        futures = [self._pool.submit(launch.launch) for launch in launches[1:]] if self._pool else []
-        if launches:
-            launches[0].launch()
+        if self._ghost_count:
+            self._ghost_launches[parity].launch()
+        sweeps = self._sweeps[parity][: len(self._shares)]
+        for sweep in sweeps:
+            sweep.set_param_at_index(DT_PARAMETER, dt)
+            sweep.set_param_at_index(TIME_PARAMETER, after)
+        futures = [self._pool.submit(sweep.launch) for sweep in sweeps[1:]] if self._pool else []
+        if sweeps:
+            sweeps[0].launch()
         for future in futures:
             future.result()
         before, self.time, self.dt = self.time, after, dt
         self.step_count += 1
-        self.wave_speed = float(self._waves.max()) if self._waves.size else 0.0
+        self.wave_speed = float(self._chunk_waves.max()) if sweeps else 0.0
         fields = store.fields[parity]
         store.parity = 1 - parity
         if parts.forcing.series_count or parts.gauges.is_due(after):
@@ -116,61 +128,56 @@ class RowEngine(Engine):
                 parts.gauges.drain()
 
     def _refresh(self) -> None:
-        """Renew the tile list, and the launches when it changed."""
+        """Renew the tile list, and deal the work anew when it changed."""
         parts = self.parts
-        parts.tiles.refresh(parts.store.fields[parts.store.parity])
-        self._steps_to_refresh = REFRESH_STEPS
+        store = parts.store
+        for launch in self._refreshes[store.parity]:
+            launch.launch()
+        self._rest_wave, self._waking_wave = parts.tiles.rest_wave.numpy().tolist()
         mask = parts.tiles.mask()
         if self._mask is not None and np.array_equal(mask, self._mask):
             return
         self._mask = mask
-        store = parts.store
         chunks = cut_chunks(mask, store.nrows, store.ncols, self._threads, CHUNK_COLS)
-        shares = deal_chunks(chunks, self._threads)
-        chunk_array = wp.array(chunks.ravel(), dtype=wp.int32, device="cpu")
-        waves = wp.zeros(len(chunks), dtype=wp.float32, device="cpu")
-        self._waves = waves.numpy()
-        self._launches = (
-            self._record(0, chunk_array, shares, waves),
-            self._record(1, chunk_array, shares, waves),
-        )
-        self._ghost_launches = [self._record_ghosts(parity) for parity in (0, 1)]
+        self._shares = deal_chunks(chunks, self._threads)
+        self._chunks.numpy()[: chunks.size] = chunks.ravel()
+        self._chunk_waves = self._waves.numpy()[: len(chunks)]
+        ghosts = self._all_ghosts[mask.ravel()[self._ghost_tiles]]
+        self._ghost_count = ghosts.size
+        self._ghosts.numpy()[: ghosts.size] = ghosts
+        for parity in (0, 1):
+            self._ghost_launches[parity].set_dim(max(1, ghosts.size))
+            for sweep, (first, last) in zip(self._sweeps[parity], self._shares, strict=False):
+                sweep.set_param_at_index(FIRST_PARAMETER, first)
+                sweep.set_dim(last - first)
 
-    def _record(
-        self, parity: int, chunk_array: wp.array, shares: list[tuple[int, int]], waves: wp.array
-    ) -> list[wp.Launch]:
-        launches = []
-        for thread, (first, last) in enumerate(shares):
-            launches.append(
-                wp.launch(
-                    step_chunks,
-                    dim=last - first,
-                    inputs=[
-                        self.parts.store.fields[parity],
-                        self.parts.scheme,
-                        chunk_array,
-                        first,
-                        self._scratch,
-                        thread * self._scratch_size,
-                        SCRATCH_PITCH,
-                        0.0,
-                        0.0,
-                    ],
-                    outputs=[waves],
-                    device="cpu",
-                    record_cmd=True,
-                )
-            )
-        return launches
+    def _record_sweep(self, parity: int, thread: int) -> wp.Launch:
+        return wp.launch(
+            step_chunks,
+            dim=1,
+            inputs=[
+                self.parts.store.fields[parity],
+                self.parts.scheme,
+                self._chunks,
+                0,
+                self._scratch,
+                thread * self._scratch_size,
+                SCRATCH_PITCH,
+                0.0,
+                0.0,
+            ],
+            outputs=[self._waves],
+            device="cpu",
+            record_cmd=True,
+        )
 
     def _record_ghosts(self, parity: int) -> wp.Launch:
         store = self.parts.store
         fields = store.fields[parity]
-        ghosts = wp.array(self._all_ghosts, dtype=wp.int32, device="cpu")
         return wp.launch(
             fill_ghost_cells,
-            dim=ghosts.shape[0],
-            inputs=[self._kinds, ghosts, store.nrows, store.ncols],
+            dim=1,
+            inputs=[self._kinds, self._ghosts, store.nrows, store.ncols],
             outputs=[fields.h, fields.u, fields.v],
             device="cpu",
             record_cmd=True,

@@ -15,7 +15,15 @@ from solver_service.numerics.bed_change import BedChange, change_water, check_be
 from solver_service.numerics.budget import VolumeBudget, edge_outflow, stored_volume
 from solver_service.numerics.device import pick_device, thread_count, warm_kernels
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
-from solver_service.numerics.fields import MAXIMA_NAMES, NEVER, STATE_NAMES, FieldStore, FloatRaster, Scheme
+from solver_service.numerics.fields import (
+    MAXIMA_NAMES,
+    NEVER,
+    STATE_NAMES,
+    TILE,
+    FieldStore,
+    FloatRaster,
+    Scheme,
+)
 from solver_service.numerics.forcing import Forcing, forced_cells
 from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
@@ -175,7 +183,6 @@ class ShallowWaterSolver:
 
     def _water_changed(self) -> None:
         self._engine.wave_speed = float(self._wave_speeds().max())
-        self._engine.state_changed()
 
     def _wave_speeds(self) -> FloatRaster:
         h, u, v = (self._store.interior(name) for name in STATE_NAMES)
@@ -196,7 +203,7 @@ class ShallowWaterSolver:
     @property
     def dt(self) -> float:
         """Time step that stability allows now [s]."""
-        wave = self._engine.wave_speed
+        wave = float(self._wave_speeds().max())
         dt_max = self._engine.parts.dt_max
         return min(self._engine.parts.courant / wave, dt_max) if wave > 0.0 else dt_max
 
@@ -267,7 +274,7 @@ class ShallowWaterSolver:
     @property
     def active_cells(self) -> int:
         """Cells of the tiles that the last step computed."""
-        return int(np.count_nonzero(self._tiles.mask())) * 32 * 32
+        return int(np.count_nonzero(self._tiles.mask())) * TILE * TILE
 
     def maxima(self) -> Maxima:
         """Largest values since the start, host copies."""
@@ -397,4 +404,3 @@ class ShallowWaterSolver:
         self._gauges.restore(records)
         self._initial_volume, self._edits_volume = volumes
         engine.time, engine.step_count, engine.dt, engine.wave_speed = time, step_count, dt, wave_speed
-        engine.state_changed()

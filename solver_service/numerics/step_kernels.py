@@ -15,8 +15,8 @@ from solver_service.numerics.reconstruction import predict, prediction
 from solver_service.numerics.riemann import face_flux
 from solver_service.numerics.warp_modules import STEP_MODULE
 
-TILE_SIDE = wp.constant(32)
-TILE_CELLS = wp.constant(1024)
+TILE_SIDE = wp.constant(16)
+TILE_CELLS = wp.constant(256)
 
 
 @wp.func

@@ -1,47 +1,105 @@
-"""Which compute tiles can change: wet ones, those with a source, and the neighbours of both.
+"""Which compute tiles can change in the next steps: those where something happens, and what lies close to them.
 
-Water crosses at most one cell in a step, so a list of wet tiles and their neighbours stays valid for as many steps as a
-tile has cells on a side. Water no deeper than `depth_film` does not move by itself and does not make a tile wet.
+A cell is lively when it moves, or when its depth changed in the last step. What it does reaches two cells further with
+every step (slopes, then fluxes); a list that is renewed every `REFRESH_STEPS` = 4 steps must therefore hold every cell
+within 8 cells of a lively one. That is half a tile: each tile says in which of its quadrants it is lively, and a
+lively quadrant wakes the tiles that touch it. Dry land sleeps, and so does a lake at rest.
+
+The first list of an interval takes every cell deeper than the film for lively, so that what is computed depends on the
+state alone and not on how it came to be. Water no deeper than `depth_film` does not move by itself.
+
+A tile's wave speed is kept while it sleeps and counts for the time step until it has been computed once after waking.
 """
 
 import warp as wp
 
+from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.warp_modules import SUPPORT_MODULE
 
-SIDE = wp.constant(32)
+SIDE = wp.constant(16)
+HALF = wp.constant(8)
+EVERY_QUADRANT = wp.constant(15)
+"""Quadrant bits: 1 south-west, 2 south-east, 4 north-west, 8 north-east."""
 
 
 @wp.kernel(module=SUPPORT_MODULE)
 def classify_tiles(
     h: wp.array2d(dtype=wp.float32),
+    u: wp.array2d(dtype=wp.float32),
+    v: wp.array2d(dtype=wp.float32),
+    h_before: wp.array2d(dtype=wp.float32),
     depth_film: float,
     nrows: int,
     ncols: int,
     tile_cols: int,
     active: wp.array(dtype=wp.int32),
+    forced: wp.array(dtype=wp.int32),
+    is_first: wp.array(dtype=wp.int32),
     # outputs
-    wet: wp.array(dtype=wp.int32),
+    quadrants: wp.array(dtype=wp.int32),
     tile_count: wp.array(dtype=wp.int32),
+    rest_wave: wp.array(dtype=wp.float32),
 ):
-    """`wet` is 1 for tiles with a cell deeper than the film; a tile that was not active cannot be."""
+    """Set the lively quadrants of each tile; a tile that sleeps has none, but in the first list.
+
+    Args:
+        h: depth [m], padded.
+        u: velocity [m/s], padded.
+        v: velocity [m/s], padded.
+        h_before: depth a step ago [m], padded.
+        depth_film: depth that does not move by itself [m].
+        nrows: grid rows.
+        ncols: grid columns.
+        tile_cols: tiles in a row of tiles.
+        active: tiles of the last list.
+        forced: 1 for tiles that may get water from outside.
+        is_first: [2], the first is 1 for the first list of an interval; copied to the second.
+        quadrants: quadrant bits of each tile.
+        tile_count: [1], set to zero.
+        rest_wave: [2], set to zero.
+    """
     tile = wp.tid()
     if tile == 0:
         tile_count[0] = 0
+        rest_wave[0] = 0.0
+        rest_wave[1] = 0.0
+        is_first[1] = is_first[0]
     found = int(0)
-    if active[tile] == 1:
-        row0 = (tile // tile_cols) * SIDE + 2
-        col0 = (tile % tile_cols) * SIDE + 2
-        row1 = wp.min(row0 + SIDE, nrows + 2)
-        col1 = wp.min(col0 + SIDE, ncols + 2)
-        i = int(row0)
-        while i < row1 and found == 0:
-            j = int(col0)
-            while j < col1 and found == 0:
-                if h[i, j] > depth_film:
-                    found = 1
-                j += 1
-            i += 1
-    wet[tile] = found
+    first = is_first[0]
+    if forced[tile] == 1:
+        found = EVERY_QUADRANT
+    elif active[tile] == 1 or first == 1:
+        row0 = (tile // tile_cols) * SIDE
+        col0 = (tile % tile_cols) * SIDE
+        for quadrant in range(4):
+            i0 = row0 + (quadrant // 2) * HALF + 2
+            j0 = col0 + (quadrant % 2) * HALF + 2
+            i1 = wp.min(i0 + HALF, nrows + 2)
+            j1 = wp.min(j0 + HALF, ncols + 2)
+            lively = int(0)
+            i = int(i0)
+            while i < i1 and lively == 0:
+                j = int(j0)
+                while j < j1 and lively == 0:
+                    if h[i, j] > depth_film:
+                        if first == 1 or u[i, j] != 0.0 or v[i, j] != 0.0 or h[i, j] != h_before[i, j]:
+                            lively = 1
+                    j += 1
+                i += 1
+            if lively == 1:
+                found = found | (1 << quadrant)
+    quadrants[tile] = found
+
+
+@wp.func
+def quadrants_at(
+    quadrants: wp.array(dtype=wp.int32), tile_row: int, tile_col: int, tile_rows: int, tile_cols: int
+) -> int:
+    """Quadrant bits of a tile, none off the grid."""
+    found = int(0)
+    if tile_row >= 0 and tile_row < tile_rows and tile_col >= 0 and tile_col < tile_cols:
+        found = quadrants[tile_row * tile_cols + tile_col]
+    return found
 
 
 @wp.kernel(module=SUPPORT_MODULE)
@@ -49,8 +107,7 @@ def list_active_tiles(
     h: wp.array2d(dtype=wp.float32),
     u: wp.array2d(dtype=wp.float32),
     v: wp.array2d(dtype=wp.float32),
-    wet: wp.array(dtype=wp.int32),
-    forced: wp.array(dtype=wp.int32),
+    quadrants: wp.array(dtype=wp.int32),
     nrows: int,
     ncols: int,
     tile_rows: int,
@@ -62,23 +119,47 @@ def list_active_tiles(
     active: wp.array(dtype=wp.int32),
     tiles: wp.array(dtype=wp.int32),
     tile_count: wp.array(dtype=wp.int32),
+    is_first: wp.array(dtype=wp.int32),
+    tile_wave: wp.array(dtype=wp.float32),
+    rest_wave: wp.array(dtype=wp.float32),
 ):
-    """List the tiles to compute; a tile that falls asleep gets the same state in both buffers."""
+    """List the tiles to compute; a tile that falls asleep gets the same state in both buffers.
+
+    `rest_wave` gets the largest wave speed [m/s] of the tiles that sleep, and of those that wake now.
+    """
     tile = wp.tid()
-    tile_row = tile // tile_cols
-    tile_col = tile % tile_cols
-    now = int(0)
-    for a in range(wp.max(tile_row - 1, 0), wp.min(tile_row + 2, tile_rows)):
-        for b in range(wp.max(tile_col - 1, 0), wp.min(tile_col + 2, tile_cols)):
-            now = wp.max(now, wp.max(wet[a * tile_cols + b], forced[a * tile_cols + b]))
-    if now == 1:
-        tiles[wp.atomic_add(tile_count, 0, 1)] = tile
-    elif active[tile] == 1:
-        row0 = tile_row * SIDE + 2
-        col0 = tile_col * SIDE + 2
+    r = tile // tile_cols
+    c = tile % tile_cols
+    near = quadrants[tile]
+    near = near | (quadrants_at(quadrants, r, c - 1, tile_rows, tile_cols) & 10)
+    near = near | (quadrants_at(quadrants, r, c + 1, tile_rows, tile_cols) & 5)
+    near = near | (quadrants_at(quadrants, r - 1, c, tile_rows, tile_cols) & 12)
+    near = near | (quadrants_at(quadrants, r + 1, c, tile_rows, tile_cols) & 3)
+    near = near | (quadrants_at(quadrants, r - 1, c - 1, tile_rows, tile_cols) & 8)
+    near = near | (quadrants_at(quadrants, r - 1, c + 1, tile_rows, tile_cols) & 4)
+    near = near | (quadrants_at(quadrants, r + 1, c - 1, tile_rows, tile_cols) & 2)
+    near = near | (quadrants_at(quadrants, r + 1, c + 1, tile_rows, tile_cols) & 1)
+    was_active = active[tile]
+    if is_first[1] == 1 or (near == 0 and was_active == 1):
+        row0 = r * SIDE + 2
+        col0 = c * SIDE + 2
+        wave = float(0.0)
         for i in range(row0, wp.min(row0 + SIDE, nrows + 2)):
             for j in range(col0, wp.min(col0 + SIDE, ncols + 2)):
-                h_out[i, j] = h[i, j]
-                u_out[i, j] = u[i, j]
-                v_out[i, j] = v[i, j]
-    active[tile] = now
+                wave = wp.max(wave, wp.max(wp.abs(u[i, j]), wp.abs(v[i, j])) + wp.sqrt(GRAVITY * h[i, j]))
+                if near == 0 and was_active == 1:
+                    h_out[i, j] = h[i, j]
+                    u_out[i, j] = u[i, j]
+                    v_out[i, j] = v[i, j]
+        tile_wave[tile] = wave
+    if near == 0:
+        wp.atomic_max(rest_wave, 0, tile_wave[tile])
+    elif is_first[1] == 1 or was_active == 0:
+        wp.atomic_max(rest_wave, 1, tile_wave[tile])
+    if near != 0:
+        tiles[wp.atomic_add(tile_count, 0, 1)] = tile
+        active[tile] = 1
+    else:
+        active[tile] = 0
+    if tile == 0:
+        is_first[0] = 0
