@@ -23,6 +23,7 @@ class CaseCatalogue:
         Raises:
             CaseError: one of the extra cases cannot be read.
         """
+        self._names: dict[str, str] = {}
         self._sources: dict[str, str] = {}
         self._summaries: dict[str, CaseSummary] = {}
         for source in list_cases():
@@ -35,6 +36,7 @@ class CaseCatalogue:
 
     def _add(self, source: str) -> None:
         summary = case_summary(source)
+        self._names[source] = summary.name
         self._sources[summary.name] = source
         self._summaries[summary.name] = summary
 
@@ -42,6 +44,10 @@ class CaseCatalogue:
     def summaries(self) -> tuple[CaseSummary, ...]:
         """All cases by name."""
         return tuple(self._summaries[name] for name in sorted(self._summaries))
+
+    def name(self, case: str) -> str:
+        """The name of a case asked for by its name or by the path that the operator gave."""
+        return self._names.get(case, case)
 
     def source(self, name: str) -> str:
         """What `load_case` is to be given for a name.

@@ -156,6 +156,7 @@ class RunRegistry:
             RunError: the case is not offered, cannot be loaded, or no worker is free.
             StoreError: the run cannot be stored.
         """
+        case = self._catalogue.name(case)
         source = self._catalogue.source(case)
         device = self._device if device == "auto" else device
         name = _new_id()

@@ -95,8 +95,11 @@ class _Server(uvicorn.Server):
         await asyncio.gather(super().shutdown(sockets), self._registry.close())
 
     def stop_with_stdin(self) -> None:
-        """Wait for the end of standard input, then stop."""
-        while sys.stdin.buffer.read(4096):
+        """Wait for the end of standard input, then stop.
+
+        Reads the descriptor, not the buffered file: its lock must not be held when the interpreter ends.
+        """
+        while os.read(sys.stdin.fileno(), 4096):
             pass
         self.should_exit = True
 

@@ -1,0 +1,23 @@
+from collections.abc import Iterator
+
+import pytest
+
+from bench.service_process import ServiceClient, ServiceProcess
+from tests.end_to_end.dam_break import write_dam_break
+
+
+@pytest.fixture(scope="session")
+def case(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return str(write_dam_break(tmp_path_factory.mktemp("case") / "dam-break"))
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory, case: str) -> Iterator[ServiceProcess]:
+    with ServiceProcess(tmp_path_factory.mktemp("data"), cases=[case], threads=2) as service:
+        yield service
+
+
+@pytest.fixture
+def client(service: ServiceProcess) -> Iterator[ServiceClient]:
+    with ServiceClient(service) as client:
+        yield client
