@@ -68,6 +68,10 @@ def read_dem(
         if key is None:
             raise TerrainError(f"Archive '{path.name}' needs the key of its array.")
         raster = read_npz(path, key, row0, cell_size, origin)
+    elif suffix == ".asc":
+        from solver_service.terrain.read_ascii_grid import read_ascii_grid
+
+        raster = read_ascii_grid(path)
     elif suffix.startswith(".hgt"):
         from solver_service.terrain.read_srtm import read_srtm
 
@@ -75,7 +79,6 @@ def read_dem(
     else:
         readers = {
             "GeoTIFF": read_gdal.read_geotiff,
-            "ESRI ASCII grid": read_gdal.read_ascii_grid,
             "USGS DEM": read_gdal.read_usgs_dem,
             "ERDAS Imagine": read_gdal.read_erdas,
         }

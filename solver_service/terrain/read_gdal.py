@@ -1,4 +1,4 @@
-"""GeoTIFF, ESRI ASCII grid, USGS DEM and ERDAS Imagine rasters, read through GDAL.
+"""GeoTIFF, USGS DEM and ERDAS Imagine rasters, read through GDAL.
 
 GDAL opens nearly anything, a text file that makes it read other files included. So each format has one
 driver, fixed by the first bytes of the file, and GDAL neither lists folders nor reads side-car files.
@@ -24,24 +24,6 @@ def read_geotiff(path: Path) -> Raster:
     if not _head(path).startswith(TIFF_MAGIC):
         raise TerrainError(f"File '{path.name}' does not begin like a TIFF; a GeoTIFF is allowed there.")
     return _read(path, "GTiff")
-
-
-def read_ascii_grid(path: Path) -> Raster:
-    """Read an ESRI ASCII grid; its coordinate system stands in a .prj file beside it, if anywhere.
-
-    Raises:
-        TerrainError: not an ESRI ASCII grid.
-    """
-    if b"ncols" not in _head(path).lower():
-        raise TerrainError(
-            f"File '{path.name}' does not begin with 'ncols'; an ESRI ASCII grid is allowed there."
-        )
-    raster = _read(path, "AAIGrid")
-    beside = path.with_suffix(".prj")
-    if raster.crs is None and beside.is_file() and not beside.is_symlink():
-        text = beside.read_text(encoding="utf-8", errors="replace")[:65536]
-        return Raster(raster.values, raster.x0, raster.y0, raster.dx, raster.dy, text.strip() or None)
-    return raster
 
 
 def read_usgs_dem(path: Path) -> Raster:

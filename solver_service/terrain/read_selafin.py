@@ -123,9 +123,8 @@ def _parse(records: list[bytes]) -> Mesh:
     next(stream)
     bed = next((k for k, name in enumerate(names) if name.startswith(BED_NAMES)), None)
     if bed is None:
-        raise ValueError(
-            f"its variables are {[name.strip() for name in names]}; one named BOTTOM or FOND is needed"
-        )
+        found = ", ".join(name.strip() for name in names)
+        raise ValueError(f"its variables are {found}; one named BOTTOM or FOND is needed")
     z = [_floats(next(stream), nodes) for _ in names][bed]
     if not (np.isfinite(x).all() and np.isfinite(y).all() and np.isfinite(z).all()):
         raise ValueError("a node is not finite")
