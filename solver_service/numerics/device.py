@@ -112,3 +112,19 @@ def thread_count(wish: int | None) -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def compile_for_cuda(architecture: int, folder: Path) -> list[Path]:
+    """Compile every kernel of CUDA devices to cubin files; needs no GPU.
+
+    Args:
+        architecture: compute capability, 90 for sm_90.
+        folder: where the files go.
+
+    Returns:
+        The cubin files.
+    """
+    _import_kernels()
+    for module in (SUPPORT_MODULE, STEP_MODULE):
+        wp.compile_aot_module(module, arch=architecture, module_dir=folder, use_ptx=False)
+    return sorted(folder.glob("*.cubin"))

@@ -6,10 +6,6 @@ from solver_service.numerics.clock_kernels import CLOCK_BEFORE, CLOCK_TIME
 from solver_service.numerics.fields import Fields
 from solver_service.numerics.warp_modules import SUPPORT_MODULE
 
-RECORDS_PER_STEP = 16
-"""Gauge times that one step may pass; dt is never larger than this many gauge intervals."""
-
-
 @wp.kernel(module=SUPPORT_MODULE)
 def record_gauges(
     f: Fields,

@@ -10,13 +10,11 @@ import warp as wp
 
 from solver_service.errors import ModelError
 from solver_service.numerics.fields import Fields, FieldStore
-from solver_service.numerics.gauge_kernels import RECORDS_PER_STEP, advance_gauge_cursor, record_gauges
+from solver_service.numerics.gauge_kernels import advance_gauge_cursor, record_gauges
 from solver_service.numerics.params import SolverParams
 
 DRAIN_STEPS = 256
 """Steps between two calls of `GaugeRecorder.drain`, at most."""
-
-ROOM = RECORDS_PER_STEP * (DRAIN_STEPS + 32)
 
 
 @dataclass(frozen=True)
@@ -41,12 +39,13 @@ class GaugeRecorder:
     Args:
         params: gauge places and interval.
         store: rasters of the run.
+        dt_max: largest time step [s]; the record buffer has room for the gauge times that so long steps pass.
 
     Raises:
         ModelError: when a gauge is off the grid.
     """
 
-    def __init__(self, params: SolverParams, store: FieldStore) -> None:
+    def __init__(self, params: SolverParams, store: FieldStore, dt_max: float) -> None:
         self._store = store
         self.interval = params.gauge_interval
         self.count = len(params.gauges)
@@ -61,12 +60,8 @@ class GaugeRecorder:
             self._rows = wp.array(self.rows, dtype=wp.int32, device=device)
             self._cols = wp.array(self.cols, dtype=wp.int32, device=device)
             self._cursor = wp.zeros(2, dtype=wp.int32, device=device)
-            self._records = wp.zeros((ROOM, self.count), dtype=wp.vec4, device=device)
-
-    @property
-    def dt_max(self) -> float:
-        """Largest step for which the record buffer is sure to suffice [s]."""
-        return (RECORDS_PER_STEP - 1) * self.interval if self.count else float("inf")
+            room = (DRAIN_STEPS + 8) * (int(dt_max / self.interval) + 2)
+            self._records = wp.zeros((room, self.count), dtype=wp.vec4, device=device)
 
     def begin(self) -> None:
         """Start anew with one record at time zero."""

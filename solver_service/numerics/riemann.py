@@ -13,8 +13,10 @@ a = (s_r + s_l) / (s_r - s_l), b = s_l s_r / (s_r - s_l):
 This is HLL written so that it is exact for equal states and mirrors bit for bit. HLLC differs in the tangential
 momentum alone, which the mass flux carries from the side it comes from.
 
-Where the step rises above the surface the face is a wall: mass flux and hydrostatic pressure come out of the above, and
-the impulse of the water that runs into it, h u (u + s) with s the speed of the reflected wave, is added.
+Where the step rises above the level that the water would reach when reflected, (c + u/2)^2 / g, the face is a wall
+[George2008]: mass flux and hydrostatic pressure come out of the above, and the impulse of the water that runs into it,
+h u (u + s) with s the speed of the reflected wave, is added. Water that can climb the step keeps its momentum: held back
+at every emergent step, the shore of Thacker's circling plane triples its error.
 
 Each cell takes the normal momentum flux relative to the pressure g h*^2 / 2 of its own side, plus the pull
 g h min(z_f - z, 0) of a step. Together with g h (eta_e - eta_w) inside the cell this is the full balance of pressure and
@@ -112,7 +114,9 @@ def face_flux(
     mass = wp.max(wp.min(mass_free, cap_l), -cap_r)
     normal = normal + (mass - mass_free) * wp.where(mass < mass_free, u_l, u_r)
 
-    # A bed step that the surface does not reach is a wall: water that runs into it is reflected.
+    # A bed step that the reflected water does not reach is a wall.
+    climb_l = c_wall_l + 0.5 * wp.max(u_l, 0.0)
+    climb_r = c_wall_r - 0.5 * wp.min(u_r, 0.0)
     ram_l = d_l * u_l * wp.max(u_l + wp.max(u_l + c_wall_l, 0.5 * u_l + c_wall_l), 0.0)
     ram_r = d_r * u_r * wp.min(u_r - wp.max(c_wall_r - u_r, c_wall_r - 0.5 * u_r), 0.0)
 
@@ -120,8 +124,8 @@ def face_flux(
     mixed = 0.5 * ((q_l * v_l + q_r * v_r) + a * (q_l * v_l - q_r * v_r)) + b * (hs_r * v_r - hs_l * v_l)
     tangential = wp.where(contact > 0.5, carried, mixed)
 
-    pull_l = GRAVITY * (d_l * wp.min(rise_l, 0.0)) + wp.where(step >= d_l, ram_l, 0.0)
-    pull_r = GRAVITY * (d_r * wp.min(rise_r, 0.0)) + wp.where(-step >= d_r, ram_r, 0.0)
+    pull_l = GRAVITY * (d_l * wp.min(rise_l, 0.0)) + wp.where(GRAVITY * step >= climb_l * climb_l, ram_l, 0.0)
+    pull_r = GRAVITY * (d_r * wp.min(rise_r, 0.0)) + wp.where(-GRAVITY * step >= climb_r * climb_r, ram_r, 0.0)
     normal_l = (normal + 0.5 * dp) + pull_l
     normal_r = (normal - 0.5 * dp) + pull_r
     return wp.vec4(mass, normal_l, normal_r, tangential)

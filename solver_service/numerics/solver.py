@@ -67,7 +67,8 @@ class ShallowWaterSolver:
         drag = float(GRAVITY) * np.broadcast_to(np.asarray(model.manning_n, np.float64), model.shape) ** 2
         store.write_padded("drag", np.pad(drag.astype(np.float32), 2, mode="symmetric"))
         self._forcing = Forcing(model, self.device)
-        self._gauges = GaugeRecorder(params, store)
+        self._dt_max = min(params.dt_max, params.cfl * self._forcing.dt_max)
+        self._gauges = GaugeRecorder(params, store, self._dt_max)
         self._tiles = ActiveTiles(store, params.depth_film, forced_cells(model, store))
         self._engine = self._choose_engine()
         self._initial_volume = 0.0
@@ -110,7 +111,7 @@ class ShallowWaterSolver:
             gauges=self._gauges,
             edge_kinds=self._edge_kinds,
             courant=courant,
-            dt_max=min(params.dt_max, params.cfl * self._forcing.dt_max, self._gauges.dt_max),
+            dt_max=self._dt_max,
             dt_min=params.dt_min,
         )
         if self.device == "cpu" and params.engine != "kernels" and rows_compile():
@@ -186,7 +187,8 @@ class ShallowWaterSolver:
 
     def _wave_speeds(self) -> FloatRaster:
         h, u, v = (self._store.interior(name) for name in STATE_NAMES)
-        return np.maximum(np.abs(u), np.abs(v)) + np.sqrt(np.float32(GRAVITY) * h)
+        with np.errstate(all="ignore"):  # after a blow-up anything may stand here
+            return np.maximum(np.abs(u), np.abs(v)) + np.sqrt(np.float32(GRAVITY) * h)
 
     # --- time ------------------------------------------------------------------------------------
 
@@ -204,8 +206,7 @@ class ShallowWaterSolver:
     def dt(self) -> float:
         """Time step that stability allows now [s]."""
         wave = float(self._wave_speeds().max())
-        dt_max = self._engine.parts.dt_max
-        return min(self._engine.parts.courant / wave, dt_max) if wave > 0.0 else dt_max
+        return min(self._engine.parts.courant / wave, self._dt_max) if wave > 0.0 else self._dt_max
 
     def advance_to(self, time: float, should_stop: StopQuestion | None = None) -> bool:
         """Compute up to exactly `time` [s].
