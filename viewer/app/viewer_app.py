@@ -30,6 +30,7 @@ from viewer.commands import (
     Play,
     ProbeAt,
     Recalculate,
+    Redo,
     ResumeRun,
     SavePicture,
     Seek,
@@ -38,10 +39,11 @@ from viewer.commands import (
     SetSpeed,
     StartRun,
     StopRun,
+    Undo,
 )
 from viewer.errors import ViewerError
 from viewer.net import ConnectionThread, FrameLoader
-from viewer.render import FrameInputs, RenderOptions
+from viewer.render import FrameInputs, HudText, RenderOptions
 from viewer.view_status import ViewStatus
 from viewer.world import Heightfield, PlaybackClock
 
@@ -49,6 +51,24 @@ __all__ = ["ViewerApp"]
 
 PLAYBACK_LENGTH_S = 60.0
 """Wall time in which a whole run plays at the speed chosen first [s]."""
+WITHOUT_PICTURE = (
+    FollowLive,
+    MoveHover,
+    Pause,
+    PauseRun,
+    Play,
+    ProbeAt,
+    Recalculate,
+    Redo,
+    ResumeRun,
+    SetSpeed,
+    StartRun,
+    StopRun,
+    Undo,
+)
+"""Commands that change no picture by themselves; what they bring about does."""
+TEXT_PERIOD_S = 0.5
+"""The picture is drawn anew at most this often when only its text has changed [s]."""
 STATUS_PERIOD_S = 0.1
 """The status is made anew at most this often while only time passes [s]."""
 
@@ -75,6 +95,8 @@ class ViewerApp:
         self._hover_at: tuple[float, float] | None = None
         self._probe_at: tuple[float, float] | None = None
         self._last_advance: float | None = None
+        self._drawn_text: HudText | None = None
+        self._text_checked = -math.inf
         self._picture_stale = True
         self._status_stale = True
         self._status_made = -math.inf
@@ -104,7 +126,7 @@ class ViewerApp:
 
     def dispatch(self, command: Command) -> None:
         """Carry out a command; what goes wrong is told in the status message."""
-        self._picture_stale = self._status_stale = True
+        self._status_stale = True
         try:
             self.carry_out(command)
         except (ViewerError, protocol.ProtocolError) as error:
@@ -116,6 +138,7 @@ class ViewerApp:
         Raises:
             CommandError: it makes no sense now; nothing was changed.
         """
+        self._picture_stale |= not isinstance(command, WITHOUT_PICTURE)
         match command:
             case Play():
                 self.clock.play()
@@ -150,6 +173,7 @@ class ViewerApp:
                 self._trace_probe()
             case MoveHover(x, y):
                 self._hover_at = None if x is None or y is None else (x, y)
+                self._picture_stale |= self.control.editing.drawing.is_on
                 self.control.editing.hover(self._hover_at, self.shown)
             case SavePicture(path):
                 self._picture_path = path
@@ -172,8 +196,10 @@ class ViewerApp:
             self.control.take_frame(frame)
         if self.desk.is_open != connected_before or not self.desk.is_open:
             self._status_stale = True
-        changed = self._picture_stale or self.control.is_stale
-        self._picture_stale = self.control.is_stale = False
+        self._status_stale |= self.control.is_stale
+        self.control.is_stale = False
+        changed = self._picture_stale or self._is_text_old(now)
+        self._picture_stale = False
         shown = self.shown
         if shown is not None and self.camera_work is not None:
             changed |= self.camera_work.advance(wall_dt)
@@ -223,14 +249,13 @@ class ViewerApp:
         """Return all the picture depends on, None before the terrain has come."""
         if self.shown is None or self.camera_work is None:
             return None
-        notice = "" if self.desk.is_open else self.desk.connection_sentence()
-        progress = self.desk.book.progress.get(self.shown.run)
+        self._drawn_text = self._text(self.shown)
         return FrameInputs(
             camera=self.camera_work.camera,
             water=self.feed.pair,
             edits=edit_overlay(self.shown, self.control.editing.drawing),
             options=self.options,
-            hud=hud_text(self.shown, self.clock.time, progress, self.recalculated, notice),
+            hud=self._drawn_text,
         )
 
     def note_painted(self, size: tuple[int, int]) -> None:
@@ -271,6 +296,18 @@ class ViewerApp:
         return self.control.editing.unconfirmed is not None or (begun is not None and begun.is_waiting)
 
     # --- within ---------------------------------------------------------------------------------------
+
+    def _text(self, shown: ShownRun) -> HudText:
+        notice = "" if self.desk.is_open else self.desk.connection_sentence()
+        progress = self.desk.book.progress.get(shown.run)
+        return hud_text(shown, self.clock.time, progress, self.recalculated, notice)
+
+    def _is_text_old(self, now: float) -> bool:
+        """Whether the picture is to be drawn anew for its text alone: not often, never before a branch."""
+        if self.shown is None or self.is_busy or now - self._text_checked < TEXT_PERIOD_S:
+            return False
+        self._text_checked = now
+        return self._text(self.shown) != self._drawn_text
 
     def _new_terrain(self, shown: ShownRun) -> None:
         """Look at another terrain from where all of it is seen."""

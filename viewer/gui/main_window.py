@@ -115,7 +115,6 @@ class MainWindow(QMainWindow):
 
     def _dispatch(self, command: Command) -> None:
         self._conductor.dispatch(command)
-        self.scene.update()
 
     def _fail(self, sentence: str) -> None:
         self.failure = sentence

@@ -209,8 +209,6 @@ class SceneWidget(QOpenGLWidget):
     def _send(self, commands: Sequence[Command]) -> None:
         for command in commands:
             self._conductor.dispatch(command)
-        if commands:
-            self.update()
 
     def _count_picture(self) -> None:
         now = time.monotonic()
