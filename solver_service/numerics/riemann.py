@@ -4,24 +4,25 @@ Left and right state (depth h, bed z at the face) meet at the bed z_f of [ChenNo
 
     z_f = min(max(z_l, z_r), min(eta_l, eta_r)),   h*_l = min(eta_l - z_f, h_l),   h*_r likewise
 
-which is [Audusse2004] wherever the bed step is under water, and keeps the full pull of gravity where thin water
-runs over a step. With s_l <= 0 <= s_r (two-rarefaction estimate, exact speeds at a dry side [Toro2001]),
-a = (s_r + s_l) / (s_r - s_l), b = s_l s_r / (s_r - s_l):
+which is [Audusse2004] wherever the bed step is under water, and keeps the full pull of gravity where thin
+water runs over a step. With s_l <= 0 <= s_r (two-rarefaction estimate, exact speeds at a dry side
+[Toro2001]), a = (s_r + s_l) / (s_r - s_l), b = s_l s_r / (s_r - s_l):
 
     F = (F_l + F_r) / 2 + a (F_l - F_r) / 2 + b (U_r - U_l)
 
-This is HLL written so that it is exact for equal states and mirrors bit for bit. HLLC differs in the tangential
-momentum alone, which the mass flux carries from the side it comes from.
+This is HLL written so that it is exact for equal states and mirrors bit for bit. HLLC differs in the
+tangential momentum alone, which the mass flux carries from the side it comes from.
 
-Where the step rises above the level that the water would reach when reflected, (c + u/2)^2 / g, the face is a wall
-[George2008]: mass flux and hydrostatic pressure come out of the above, and the impulse of the water that runs into it,
-h u (u + s) with s the speed of the reflected wave, is added. Water that can climb the step keeps its momentum: held back
-at every emergent step, the shore of Thacker's circling plane triples its error.
+Where the step rises above the level that the water would reach when reflected, (c + u/2)^2 / g, the face is
+a wall [George2008]: mass flux and hydrostatic pressure come out of the above, and the impulse of the water
+that runs into it, h u (u + s) with s the speed of the reflected wave, is added. Water that can climb the
+step keeps its momentum: held back at every emergent step, the shore of Thacker's circling plane triples its
+error.
 
 Each cell takes the normal momentum flux relative to the pressure g h*^2 / 2 of its own side, plus the pull
-g h min(z_f - z, 0) of a step. Together with g h (eta_e - eta_w) inside the cell this is the full balance of pressure and
-bed slope (see `conservative_update`), and every term is exactly zero in a lake at rest: h*_l and h*_r that differ by
-rounding only are set equal (`FACE_TOLERANCE`).
+g h min(z_f - z, 0) of a step. Together with g h (eta_e - eta_w) inside the cell this is the full balance of
+pressure and bed slope (see `conservative_update`), and every term is exactly zero in a lake at rest: h*_l
+and h*_r that differ by rounding only are set equal (`FACE_TOLERANCE`).
 """
 
 import warp as wp
@@ -70,8 +71,8 @@ def face_flux(
     v_l = v_l_centre + v_l_slope
     v_r = v_r_centre - v_r_slope
 
-    # z_f above the left and above the right bed; each from its own side, so that a dry side stays exactly dry below
-    # any step and the face mirrors bit for bit.
+    # z_f above the left and above the right bed; each from its own side, so that a dry side stays exactly dry
+    # below any step and the face mirrors bit for bit.
     step = z_step - (z_l_slope + z_r_slope)
     rise_l = wp.min(wp.max(step, 0.0), wp.min(d_l, d_r + step))
     rise_r = wp.min(wp.max(-step, 0.0), wp.min(d_r, d_l - step))
@@ -125,7 +126,9 @@ def face_flux(
     tangential = wp.where(contact > 0.5, carried, mixed)
 
     pull_l = GRAVITY * (d_l * wp.min(rise_l, 0.0)) + wp.where(GRAVITY * step >= climb_l * climb_l, ram_l, 0.0)
-    pull_r = GRAVITY * (d_r * wp.min(rise_r, 0.0)) + wp.where(-GRAVITY * step >= climb_r * climb_r, ram_r, 0.0)
+    pull_r = GRAVITY * (d_r * wp.min(rise_r, 0.0)) + wp.where(
+        -GRAVITY * step >= climb_r * climb_r, ram_r, 0.0
+    )
     normal_l = (normal + 0.5 * dp) + pull_l
     normal_r = (normal - 0.5 * dp) + pull_r
     return wp.vec4(mass, normal_l, normal_r, tangential)
