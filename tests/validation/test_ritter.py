@@ -11,10 +11,11 @@ DAM = Ritter(h_left=10.0)
 GRID = channel(200, -1000.0, 1000.0)
 TIME = 40.0
 BOUNDS = {
-    "L1 of h": 0.022,
-    "L2 of h": 0.038,
-    "Linf of h": 0.20,
-    "L1 of the unit discharge": 0.20,
+    "L1 of h": 0.0175,
+    "L2 of h": 0.031,
+    "Linf of h": 0.172,
+    "L1 of the unit discharge": 0.165,
+    "L1 of the velocity": 0.036,
 }
 
 
@@ -27,8 +28,13 @@ def exact(grid=GRID):
     return DAM.state(*grid.centres, TIME)
 
 
-def test_errors_stay_below_the_published_second_order_scheme(computed, compare):
-    compare(CASE, BOUNDS, computed, exact(), solve_published(DAM, GRID, TIME))
+@pytest.fixture(scope="module")
+def published():
+    return solve_published(DAM, GRID, TIME)
+
+
+def test_errors_stay_below_the_published_second_order_scheme(computed, published, compare):
+    compare(CASE, BOUNDS, computed, exact(), published)
 
 
 def test_first_order_run_fails_the_bounds():
@@ -36,11 +42,20 @@ def test_first_order_run_fails_the_bounds():
     assert all(first[norm] > 1.5 * bound for norm, bound in BOUNDS.items())
 
 
-def test_front_is_never_ahead_of_the_exact_one_and_lags_little(computed, figure):
+def test_front_is_never_ahead_of_the_exact_one_and_lags_no_more_than_the_published(
+    computed, published, figure
+):
     x = GRID.centres[0][0]
-    front = x[computed[0][0] > 0.01].max()
-    reach = x[exact()[0][0] > 0.01].max()
-    figure(CASE, "front (h = 1 cm) behind the exact one", reach - front, unit="m", below=45.0, above=-10.0)
+    reach, front, yardstick = (x[state[0][0] > 0.01].max() for state in (exact(), computed, published))
+    figure(
+        CASE,
+        "front (h = 1 cm) behind the exact one",
+        reach - front,
+        unit="m",
+        below=reach - yardstick,
+        above=-10.0,
+        yardstick=reach - yardstick,
+    )
 
 
 def test_error_falls_with_the_cell(figure):

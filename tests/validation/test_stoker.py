@@ -13,11 +13,11 @@ DAM = Stoker(h_left=10.0, h_right=1.0)
 GRID = channel(200, -1000.0, 1000.0)
 TIME = 40.0
 BOUNDS = {
-    "L1 of h": 0.020,
-    "L2 of h": 0.085,
-    "Linf of h": 1.0,
-    "L1 of the unit discharge": 0.13,
-    "L1 of the velocity": 0.03,
+    "L1 of h": 0.0185,
+    "L2 of h": 0.081,
+    "Linf of h": 0.99,
+    "L1 of the unit discharge": 0.113,
+    "L1 of the velocity": 0.0365,
 }
 
 
