@@ -5,9 +5,10 @@ from solver_service.numerics.bed_change import BedChange
 from solver_service.numerics.budget import VolumeBudget
 from solver_service.numerics.device import device_names, pick_device, warm_kernels
 from solver_service.numerics.gauges import GaugeSeries
+from solver_service.numerics.maxima import Maxima
 from solver_service.numerics.model import EdgeBoundary, FloodModel, Source
 from solver_service.numerics.params import SolverParams
-from solver_service.numerics.snapshot import Maxima, Snapshot
+from solver_service.numerics.snapshot import Snapshot
 from solver_service.numerics.solver import ShallowWaterSolver
 
 __all__ = [

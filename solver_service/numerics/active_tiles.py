@@ -1,4 +1,4 @@
-"""The list of compute tiles that can change, so that dry land costs nothing; see `tile_kernels` for the rule."""
+"""The list of compute tiles that can change, so that dry land costs nothing; `tile_kernels` has the rule."""
 
 from __future__ import annotations
 

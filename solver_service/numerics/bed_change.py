@@ -1,7 +1,8 @@
 """A new bed under water: a levee drawn, a trench dug.
 
-Where the bed rises by dz the water column is cut, h' = max(h - dz, 0), so that the surface keeps its level where it
-stays wet; where the bed sinks h stays. Velocities stay, zero where the cell falls dry. What was cut is booked.
+Where the bed rises by dz the water column is cut, h' = max(h - dz, 0), so that the surface keeps its level
+where it stays wet; where the bed sinks h stays. Velocities stay, zero where the cell falls dry. What was
+cut is booked.
 """
 
 from __future__ import annotations

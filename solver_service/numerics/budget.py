@@ -2,7 +2,8 @@
 
     error = stored - (initial + inflow + rain - outflow - edits)
 
-All sums are float64 and in a fixed order. Outflow is summed per edge face from the very fluxes that moved the water.
+All sums are float64 and in a fixed order. Outflow is summed per edge face from the very fluxes that moved
+the water.
 """
 
 from __future__ import annotations

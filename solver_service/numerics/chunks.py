@@ -1,11 +1,13 @@
 """The active tiles of a grid as rectangles of cells for the row loops.
 
-Tiles that lie side by side in a row of tiles make one rectangle, split where it is wider than the cache likes; equal
-rectangles of consecutive tile rows are stacked, but not higher than a thread's fair share, so that the threads can be
-dealt equal work.
+Tiles that lie side by side in a row of tiles make one rectangle, split where it is wider than the cache
+likes; equal rectangles of consecutive tile rows are stacked, but not higher than a thread's fair share, so
+that the threads can be dealt equal work.
 """
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -68,4 +70,4 @@ def deal_chunks(chunks: npt.NDArray[np.int32], threads: int) -> list[tuple[int, 
         *np.searchsorted(reached, reached[-1] * np.arange(1, threads) / threads).tolist(),
         len(chunks),
     ]
-    return [(first, last) for first, last in zip(bounds, bounds[1:], strict=False) if last > first]
+    return [(first, last) for first, last in pairwise(bounds) if last > first]

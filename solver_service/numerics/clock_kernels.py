@@ -2,8 +2,9 @@
 
     dt = min(cfl dx / max(|u| + c, |v| + c), dt_max)
 
-clipped only to land exactly on the target; when less than two steps remain they are made equal, so that no sliver of
-a step follows. `choose_dt` is the same arithmetic for the row engine, which keeps its clock on the host.
+clipped only to land exactly on the target; when less than two steps remain they are made equal, so that no
+sliver of a step follows. `choose_dt` is the same arithmetic for the row engine, which keeps its clock on
+the host.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def begin_step(
     clock: wp.array(dtype=wp.float64),
     counts: wp.array(dtype=wp.int32),
 ):
-    """Set dt from the largest wave speed of the slots and of sleeping tiles, and move the clock; dt = 0 once the target is reached."""
+    """Set dt from the largest wave speed, sleeping tiles included; move the clock; dt = 0 at the target."""
     time = clock[CLOCK_TIME]
     target = clock[CLOCK_TARGET]
     clock[CLOCK_DT] = wp.float64(0.0)
@@ -96,6 +97,6 @@ def decide_to_go_on(
     # outputs
     go_on: wp.array(dtype=wp.int32),
 ):
-    """`go_on` is 1 while the target is ahead, nothing failed and the step limit of this launch is not reached."""
+    """`go_on` is 1 while the target is ahead, nothing failed, and steps are left for this launch."""
     more = clock[CLOCK_TIME] < clock[CLOCK_TARGET] and counts[COUNT_FAILED] == 0
     go_on[0] = wp.where(more and counts[COUNT_STEPS] < counts[COUNT_LIMIT], 1, 0)

@@ -3,11 +3,11 @@
     h'  = h - dt/dx (F_e - F_w + G_n - G_s)
     hu' = hu - dt/dx (F_e - F_w + G_n - G_s + g h (eta_e - eta_w))           (hv' alike), then friction
 
-The momentum fluxes are relative to the cell's own pressure (see `riemann`), so what remains of pressure and bed
-slope inside the cell is g h (eta_e - eta_w), exactly zero when the reconstructed surface is level.
+The momentum fluxes are relative to the cell's own pressure (see `riemann`), so what remains of pressure and
+bed slope inside the cell is g h (eta_e - eta_w), exactly zero when the reconstructed surface is level.
 
-Hazard is the UK rating HR = h (|u| + 0.5) + DF, DF = 0.5 for h <= 0.25 m, else 1 [Defra2006]; speeds count for the
-maxima only where h > 0.05 m.
+Hazard is the UK rating HR = h (|u| + 0.5) + DF, DF = 0.5 for h <= 0.25 m, else 1 [Defra2006]; speeds count
+for the maxima only where h > 0.05 m.
 """
 
 import warp as wp
@@ -46,7 +46,10 @@ def update_cell(
     dx: float,
     depth_dry: float,
 ) -> wp.vec4:
-    """Depth, velocities and speed after the step; `e_x`, `e_y` are half the differences of eta inside the cell."""
+    """Depth, velocities and speed after the step.
+
+    `e_x`, `e_y` are half the differences of eta inside the cell [m]; `drag` is g n^2 [m^(1/3)].
+    """
     r = dt / dx
     h_new = h - r * ((mass_e - mass_w) + (mass_n - mass_s))
     pull = 2.0 * GRAVITY * h_p

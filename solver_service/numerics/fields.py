@@ -1,7 +1,7 @@
 """The arrays of a run on its device, and the numbers of the scheme, as Warp structs.
 
-Rasters are float32 [nrows + 4, ncols + 4]: two ghost cells surround the grid. h, u, v exist twice; a step reads one
-set and writes the other. Arrival times are `NEVER` where the water has not come.
+Rasters are float32 [nrows + 4, ncols + 4]: two ghost cells surround the grid. h, u, v exist twice; a step
+reads one set and writes the other. Arrival times are `NEVER` where the water has not come.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.model import FloodModel
 
 WAVE_FLOOR = 1.0
-"""Wave speed that the time step always allows for [m/s], so that the first water does not meet a giant step."""
+"""Wave speed that a step always allows for [m/s], so that the first water does not meet a giant step."""
 
 
 class Forcing:
@@ -65,7 +65,7 @@ class Forcing:
 
     @staticmethod
     def _largest_step(model: FloodModel) -> float:
-        """Courant-free part of the largest step: dx over the speed at which the largest inflow spreads [s]."""
+        """Largest step at Courant number 1 [s]: dx over the speed at which the largest inflow spreads."""
         speed = WAVE_FLOOR
         for source in model.sources:
             per_width = float(source.discharge.max()) / (math.sqrt(source.rows.size) * model.dx)

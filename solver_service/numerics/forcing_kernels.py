@@ -1,8 +1,9 @@
 """Water that comes from outside: point and disc discharges, and rain.
 
-A series is linear between its times, zero before the first and held after the last; V(t) is its exact integral. What is
-due as depth, V / area, is handed out in quanta of 2^-16 m (15 micrometres): any float32 depth below 256 m is raised by
-a quantum without rounding, so that rain on a deep lake is not lost and the budget closes. New water brings no momentum.
+A series is linear between its times, zero before the first and held after the last; V(t) is its exact
+integral. What is due as depth, V / area, is handed out in quanta of 2^-16 m (15 micrometres): any float32
+depth below 256 m is raised by a quantum without rounding, so that rain on a deep lake is not lost and the
+budget closes. New water brings no momentum.
 """
 
 import warp as wp

@@ -7,8 +7,9 @@ quadratic equation in |U|:
 
     U = 2 U* / (1 + sqrt(1 + 4 dt k |U*|))
 
-Unconditionally stable, never turns the flow round, and exact for uniform flow (at a balance of slope and friction U
-stays what it is). h^(-1/3) comes from a bit estimate and three Newton steps: pow would keep row loops scalar.
+Unconditionally stable, never turns the flow round, and exact for uniform flow (at a balance of slope and
+friction U stays what it is). h^(-1/3) comes from a bit estimate and three Newton steps: pow would keep row
+loops scalar.
 """
 
 import warp as wp

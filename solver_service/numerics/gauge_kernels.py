@@ -6,6 +6,7 @@ from solver_service.numerics.clock_kernels import CLOCK_BEFORE, CLOCK_TIME
 from solver_service.numerics.fields import Fields
 from solver_service.numerics.warp_modules import SUPPORT_MODULE
 
+
 @wp.kernel(module=SUPPORT_MODULE)
 def record_gauges(
     f: Fields,

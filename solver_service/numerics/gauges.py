@@ -117,5 +117,5 @@ class GaugeRecorder:
     def series(self) -> GaugeSeries:
         """Everything recorded so far."""
         records = self.records()
-        times = np.arange(len(records)) * self.interval
+        times = np.arange(len(records), dtype=np.float64) * self.interval
         return GaugeSeries(times, *(np.ascontiguousarray(records[:, :, k]) for k in range(4)))

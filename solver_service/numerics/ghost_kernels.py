@@ -1,7 +1,7 @@
 """Ghost cells: walls mirror the water, open edges let it leave.
 
-A wall reflects depth, tangential velocity and bed, and turns the normal velocity round. An open edge copies the edge
-cell; only outward normal velocity is copied, so that an open edge never becomes a source.
+A wall reflects depth, tangential velocity and bed, and turns the normal velocity round. An open edge copies
+the edge cell; only outward normal velocity is copied, so that an open edge never becomes a source.
 """
 
 from __future__ import annotations

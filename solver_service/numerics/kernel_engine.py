@@ -1,8 +1,9 @@
 """Steps by Warp kernels alone: the engine of CUDA devices, and the oracle of the row engine on the CPU.
 
-Four steps follow one refresh of the tile list; this body is repeated while the device's own clock is short of the
-target (`wp.capture_while`; on CUDA captured once as a graph, so that the host waits for nothing in between). Steps
-after the landing find dt = 0 and copy the state, so that the body always ends in the buffer it began with.
+Four steps follow one refresh of the tile list; this body is repeated while the device's own clock is short
+of the target (`wp.capture_while`; on CUDA captured once as a graph, so that the host waits for nothing in
+between). Steps after the landing find dt = 0 and copy the state, so that the body always ends in the buffer
+it began with.
 """
 
 from __future__ import annotations

@@ -1,26 +1,27 @@
 """Linear reconstruction and half-step prediction of a cell (MUSCL-Hancock).
 
-Depth h, surface eta = h + z_b and velocities u, v are linear in a cell, with slopes limited by the generalised
-minmod function; the bed slope is the slope of eta less that of h, so that a level surface stays level at every
-face. The primitive equations carry the cell to half time:
+Depth h, surface eta = h + z_b and velocities u, v are linear in a cell, with slopes limited by the
+generalised minmod function; the bed slope is the slope of eta less that of h, so that a level surface stays
+level at every face. The primitive equations carry the cell to half time:
 
     h' = h - dt/2 (u h_x + h u_x + v h_y + h v_y)
     u' = [u - dt/2 (u u_x + v u_y + g eta_x)] / (1 + dt/2 g n^2 |u| h^(-4/3))          (v' alike)
 
-A difference of eta between two cells is taken as (h_e - h_c) + (z_e - z_c) and counts as zero when it is no larger
-than the rounding of the depths it is made of (`LEVEL_TOLERANCE`): a float32 lake at rest is then exactly level, and
-nothing that float32 depths can express is lost. A cell no deeper than `depth_dry` carries no momentum and has no
-slopes.
+A difference of eta between two cells is taken as (h_e - h_c) + (z_e - z_c) and counts as zero when it is no
+larger than the rounding of the depths it is made of (`LEVEL_TOLERANCE`): a float32 lake at rest is then
+exactly level, and nothing that float32 depths can express is lost. A cell no deeper than `depth_dry`
+carries no momentum and has no slopes.
 
-Velocity slopes fade between bed slopes of 0.2 and 0.6 to the next cell: on banks that steep shallow-water theory no
-longer holds, and linear velocities beside a bank of raster steps tear the flow off it. In the gorge of Malpasset that
-costs a tenth of the discharge and raises the water by 6 m above the observed mark; gentle beds see no difference.
+Velocity slopes fade between bed slopes of 0.2 and 0.6 to the next cell: on banks that steep shallow-water
+theory no longer holds, and linear velocities beside a bank of raster steps tear the flow off it. In the
+gorge of Malpasset that costs a tenth of the discharge and raises the water by 6 m above the observed mark;
+gentle beds see no difference.
 
-The depth that leaves through the four faces in one step must not exceed h. The flux that a face may draw from its
-donor is capped by a share of its depth that the donor alone decides (`share`): with the outflow bounds
-B_f = h_f max(u_f + c, 0) of its faces, face f may draw share B_f, share = min(1, 0.999 h dx / (dt sum B_f)). This is a
-draining limiter in the spirit of the draining time step [Bollermann2011], [Horvath2015], without a second stencil.
-In smooth flow no cap is reached.
+The depth that leaves through the four faces in one step must not exceed h. The flux that a face may draw
+from its donor is capped by a share of its depth that the donor alone decides (`share`): with the outflow
+bounds B_f = h_f max(u_f + c, 0) of its faces, face f may draw share B_f, share = min(1, 0.999 h dx / (dt
+sum B_f)). This is a draining limiter in the spirit of the draining time step [Bollermann2011],
+[Horvath2015], without a second stencil. In smooth flow no cap is reached.
 
 Sources: [Toro2001] ch. 10 and 14, [Audusse2004], [Kurganov2007].
 """
@@ -32,8 +33,8 @@ from solver_service.numerics.friction import GRAVITY, inverse_cube_root
 LEVEL_TOLERANCE = wp.constant(1.5e-7)
 """Difference of eta between neighbours that counts as none, in units of the larger depth [1].
 
-Rounding alone gives less than 2^-23 = 1.2e-7. A larger tolerance would hold small slopes fast: with 4.8e-7 the
-measured order in smooth flow falls from 1.96 to 1.78.
+Rounding alone gives less than 2^-23 = 1.2e-7. A larger tolerance would hold small slopes fast: with 4.8e-7
+the measured order in smooth flow falls from 1.96 to 1.78.
 """
 
 SLOPE_STEEP = wp.constant(0.6)

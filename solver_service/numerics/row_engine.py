@@ -1,8 +1,8 @@
 """Steps by SIMD row loops on the threads of a CPU.
 
-The active tiles are cut into chunks, the chunks dealt to the threads in equal shares, and each thread sweeps its own with
-one native call that holds no Python lock. The clock stays on the host. The result does not depend on how the tiles are
-cut or dealt.
+The active tiles are cut into chunks, the chunks dealt to the threads in equal shares, and each thread
+sweeps its own with one native call that holds no Python lock. The clock stays on the host. The result does
+not depend on how the tiles are cut or dealt.
 """
 
 from __future__ import annotations

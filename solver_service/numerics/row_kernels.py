@@ -1,16 +1,17 @@
 """The step of CPUs: row loops that clang turns into SIMD, around the same mathematics as every other engine.
 
-Warp compiles its launch loop as scalar code. Here a native loop over a row calls the C++ functions that Warp generates
-from `predict`, `face_flux`, `update_cell` and `widen_maxima`; they have no branches, so the loop vectorises. A chunk of
-cells is swept from south to north with everything in between kept in cache:
+Warp compiles its launch loop as scalar code. Here a native loop over a row calls the C++ functions that Warp
+generates from `predict`, `face_flux`, `update_cell` and `widen_maxima`; they have no branches, so the loop
+vectorises. A chunk of cells is swept from south to north with everything in between kept in cache:
 
     predict row i              -> ring of two rows of predictions
     faces between i - 1 and i  -> ring of two rows of fluxes
     faces within row i - 1     -> one row of fluxes
     update row i - 1           -> new state, maxima, wave speed
 
-Chunks are independent: they read one state and write the other, and recompute the faces on their border to the same
-bits. This module is for CPUs only; NVRTC never sees it. Names of generated functions are asked of Warp.
+Chunks are independent: they read one state and write the other, and recompute the faces on their border to
+the same bits. This module is for CPUs only; NVRTC never sees it. Names of generated functions are asked of
+Warp.
 """
 
 import warp as wp
@@ -67,8 +68,8 @@ _SWEEP = r"""
                 hc[j+1], uc[j+1], vc[j+1], zc[j+1], hs[j], us[j], vs[j], zs[j], hn[j], un[j], vn[j], zn[j],
                 kc[j], half_dt, dx, theta, depth_dry, depth_film, hancock);
             B[j] = p[0]; B[span+j] = p[1]; B[2*span+j] = p[2]; B[3*span+j] = p[3]; B[4*span+j] = p[4];
-            B[5*span+j] = p[5]; B[6*span+j] = p[6]; B[7*span+j] = p[7]; B[8*span+j] = p[8]; B[9*span+j] = p[9];
-            B[10*span+j] = p[10]; B[11*span+j] = p[11]; B[12*span+j] = p[12];
+            B[5*span+j] = p[5]; B[6*span+j] = p[6]; B[7*span+j] = p[7]; B[8*span+j] = p[8];
+            B[9*span+j] = p[9]; B[10*span+j] = p[10]; B[11*span+j] = p[11]; B[12*span+j] = p[12];
         }
         if (i == row0 - 1) continue;
 
@@ -92,8 +93,8 @@ _SWEEP = r"""
         for (int j = 0; j <= count; ++j) {
             auto q = FACE(A[j], A[3*span+j], A[span+j], A[4*span+j], A[2*span+j], A[5*span+j], A[6*span+j],
                 A[11*span+j], A[12*span+j],
-                A[j+1], A[3*span+j+1], A[span+j+1], A[4*span+j+1], A[2*span+j+1], A[5*span+j+1], A[6*span+j+1],
-                A[11*span+j+1], A[12*span+j+1], zs[j+1] - zs[j], contact);
+                A[j+1], A[3*span+j+1], A[span+j+1], A[4*span+j+1], A[2*span+j+1], A[5*span+j+1],
+                A[6*span+j+1], A[11*span+j+1], A[12*span+j+1], zs[j+1] - zs[j], contact);
             E[j] = q[0]; E[span+j] = q[1]; E[2*span+j] = q[2]; E[3*span+j] = q[3];
         }
         if (col0 == 2) edge[i - 3] -= (double)(r * E[0]);
@@ -175,7 +176,7 @@ def step_chunks(
     Args:
         f: rasters.
         s: scheme.
-        chunk_array: rows and columns of each chunk: first row, one past the last, first column, one past the last.
+        chunk_array: first row, one past the last, first column, one past the last of each chunk.
         first: number of the first chunk.
         scratch_array: scratch memory of all threads.
         scratch_offset: where this thread's begins.

@@ -6,8 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
+
+from solver_service.errors import ModelError
+from solver_service.numerics.fields import MAXIMA_NAMES, STATE_NAMES
+
+RASTERS = (*STATE_NAMES, *MAXIMA_NAMES, "z_b")
+"""Names of the rasters of a snapshot, each [nrows, ncols]."""
+
+OTHER_ARRAYS = ("edge_flow", "released", "gauge_records")
+NUMBERS = ("time", "step_count", "dt", "wave_speed", "initial_volume", "edits_volume")
 
 
 @dataclass(frozen=True)
@@ -24,20 +32,27 @@ class Snapshot:
         """Memory of the arrays."""
         return sum(array.nbytes for array in self.arrays.values())
 
+    def check(self, shape: tuple[int, int], series_count: int, gauge_count: int) -> None:
+        """Refuse a snapshot that does not belong to a model.
 
-@dataclass(frozen=True)
-class Maxima:
-    """The largest values since the start, each taken after every step; rasters [nrows, ncols]."""
+        Args:
+            shape: (nrows, ncols) of the model.
+            series_count: sources and rain of the model.
+            gauge_count: gauges of the parameters.
 
-    h: npt.NDArray[np.float32]
-    """Depth [m]."""
-    time_of_max: npt.NDArray[np.float32]
-    """Time of the largest depth [s], NaN where it stayed dry."""
-    speed: npt.NDArray[np.float32]
-    """Speed [m/s], where h > 0.05 m."""
-    unit_discharge: npt.NDArray[np.float32]
-    """Depth times speed [m2/s]."""
-    hazard: npt.NDArray[np.float32]
-    """UK hazard rating h (speed + 0.5) + debris factor."""
-    arrival_time: npt.NDArray[np.float32]
-    """First time deeper than `depth_arrival` [s], NaN where never."""
+        Raises:
+            ModelError: naming what is missing or of another size.
+        """
+        for name in (*RASTERS, *OTHER_ARRAYS):
+            if name not in self.arrays:
+                raise ModelError(f"The snapshot lacks the array {name!r}.")
+        for name in NUMBERS:
+            if name not in self.scalars:
+                raise ModelError(f"The snapshot lacks the number {name!r}.")
+        for name in RASTERS:
+            if self.arrays[name].shape != shape:
+                found = self.arrays[name].shape
+                raise ModelError(f"The snapshot's {name} has the shape {found}; the grid's is {shape}.")
+        sources, gauges = self.arrays["released"].shape, self.arrays["gauge_records"].shape[1:]
+        if sources != (series_count,) or gauges != (gauge_count, 4):
+            raise ModelError("The snapshot belongs to a model with other sources, rain or gauges.")

@@ -17,7 +17,6 @@ from solver_service.numerics.device import pick_device, thread_count, warm_kerne
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
 from solver_service.numerics.fields import (
     MAXIMA_NAMES,
-    NEVER,
     STATE_NAMES,
     TILE,
     FieldStore,
@@ -29,10 +28,11 @@ from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
 from solver_service.numerics.ghost_kernels import OPEN, WALL, pad_bed
 from solver_service.numerics.kernel_engine import KernelEngine
+from solver_service.numerics.maxima import Maxima, begin_maxima, read_maxima
 from solver_service.numerics.model import EDGES, FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.row_engine import RowEngine, rows_compile
-from solver_service.numerics.snapshot import Maxima, Snapshot
+from solver_service.numerics.snapshot import Snapshot
 from solver_service.numerics.wet_block_kernels import BLOCK_STRIDE, classify_blocks, quantise_depth
 
 WALL_HEIGHT = 1000.0
@@ -150,7 +150,7 @@ class ShallowWaterSolver:
             velocity = np.zeros_like(depth) if values is None else self._checked(f"velocity {name}", values)
             store.write(name, np.where(moving, velocity, np.float32(0.0)))
         engine.time, engine.dt, engine.step_count = 0.0, 0.0, 0
-        self._reset_maxima(depth)
+        begin_maxima(store, depth, self.params.depth_arrival)
         store.edge_flow.zero_()
         self._forcing.released = np.zeros(self._forcing.series_count)
         self._initial_volume = stored_volume(store, self.model.dx)
@@ -169,18 +169,6 @@ class ShallowWaterSolver:
                 f"The {what} is {array[row, col]} in cell (row {row}, column {col}); finite is allowed."
             )
         return array
-
-    def _reset_maxima(self, h: FloatRaster) -> None:
-        u, v = self._store.read("u"), self._store.read("v")
-        speed = np.where(h > 0.05, np.sqrt(u * u + v * v), np.float32(0.0))
-        arrived = h > self.params.depth_arrival
-        hazard = h * (speed + np.float32(0.5)) + np.where(h > 0.25, np.float32(1.0), np.float32(0.5))
-        self._store.write("h_max", h)
-        self._store.write("h_max_time", np.zeros_like(h))
-        self._store.write("speed_max", speed)
-        self._store.write("discharge_max", h * speed)
-        self._store.write("hazard_max", np.where(arrived, hazard, np.float32(0.0)))
-        self._store.write("arrival", np.where(arrived, np.float32(0.0), np.float32(NEVER)))
 
     def _water_changed(self) -> None:
         self._engine.wave_speed = float(self._wave_speeds().max())
@@ -279,21 +267,7 @@ class ShallowWaterSolver:
 
     def maxima(self) -> Maxima:
         """Largest values since the start, host copies."""
-        read = self._store.read
-        h = read("h")
-        h_max, arrival, time = read("h_max"), read("arrival"), read("h_max_time")
-        grew = h > h_max  # rain and sources raise the water after the step
-        h_max = np.maximum(h_max, h)
-        time = np.where(grew, np.float32(self.time), time)
-        nan = np.float32(np.nan)
-        return Maxima(
-            h=h_max,
-            time_of_max=np.where(h_max > self.params.depth_dry, time, nan),
-            speed=read("speed_max"),
-            unit_discharge=read("discharge_max"),
-            hazard=read("hazard_max"),
-            arrival_time=np.where(arrival < NEVER, arrival, nan),
-        )
+        return read_maxima(self._store, self.time, self.params.depth_dry)
 
     def budget(self) -> VolumeBudget:
         """Where the water came from and went."""
@@ -375,33 +349,19 @@ class ShallowWaterSolver:
         """Go back to a state of this model; what follows is bit for bit what followed then.
 
         Raises:
-            ModelError: when the snapshot is of another grid, another set of sources or gauges, or lacks a part.
+            ModelError: when the snapshot lacks a part or belongs to another grid, sources or gauges.
         """
+        snapshot.check(self.model.shape, self._forcing.series_count, self._gauges.count)
+        arrays, scalars = snapshot.arrays, snapshot.scalars
         store, engine = self._store, self._engine
-        try:
-            arrays = {name: np.asarray(values) for name, values in snapshot.arrays.items()}
-            rasters = {name: arrays[name] for name in (*STATE_NAMES, *MAXIMA_NAMES, "z_b")}
-            shapes = {name: values.shape for name, values in rasters.items()}
-            scalars = dict(snapshot.scalars)
-            time, step_count, dt = float(scalars["time"]), int(scalars["step_count"]), float(scalars["dt"])
-            wave_speed = float(scalars["wave_speed"])
-            volumes = float(scalars["initial_volume"]), float(scalars["edits_volume"])
-            released, edge_flow, records = arrays["released"], arrays["edge_flow"], arrays["gauge_records"]
-        except KeyError as error:
-            raise ModelError(f"The snapshot lacks {error.args[0]!r}.") from None
-        for name, shape in shapes.items():
-            if shape != self.model.shape:
-                raise ModelError(
-                    f"The snapshot's {name} has the shape {shape}; the grid's is {self.model.shape}."
-                )
-        if released.shape != (self._forcing.series_count,) or records.shape[1:] != (self._gauges.count, 4):
-            raise ModelError("The snapshot belongs to a model with other sources, rain or gauges.")
-        self._z_b = np.array(rasters["z_b"], np.float32)
+        self._z_b = np.array(arrays["z_b"], np.float32)
         store.write_padded("z", self._walled(self._z_b))
         for name in (*STATE_NAMES, *MAXIMA_NAMES):
-            store.write(name, rasters[name])
-        store.edge_flow.assign(edge_flow)
-        self._forcing.released = released
-        self._gauges.restore(records)
-        self._initial_volume, self._edits_volume = volumes
-        engine.time, engine.step_count, engine.dt, engine.wave_speed = time, step_count, dt, wave_speed
+            store.write(name, arrays[name])
+        store.edge_flow.assign(arrays["edge_flow"])
+        self._forcing.released = arrays["released"]
+        self._gauges.restore(arrays["gauge_records"])
+        self._initial_volume = float(scalars["initial_volume"])
+        self._edits_volume = float(scalars["edits_volume"])
+        engine.time, engine.dt = float(scalars["time"]), float(scalars["dt"])
+        engine.step_count, engine.wave_speed = int(scalars["step_count"]), float(scalars["wave_speed"])

@@ -1,9 +1,9 @@
 """The fused step: one kernel takes every cell of the active tiles from one state to the next.
 
-This is the engine of CUDA devices and, launched on the CPU, the oracle and the fallback of the row engine. A cell
-computes the predictions of itself and its neighbours and its four faces; a face computed from both sides gives the
-same float. Threads walk over the cells of the active tiles with a fixed stride, so that the launch, hence the captured
-graph, does not depend on how many tiles are active.
+This is the engine of CUDA devices and, launched on the CPU, the oracle and the fallback of the row engine.
+A cell computes the predictions of itself and its neighbours and its four faces; a face computed from both
+sides gives the same float. Threads walk over the cells of the active tiles with a fixed stride, so that the
+launch, hence the captured graph, does not depend on how many tiles are active.
 """
 
 import warp as wp

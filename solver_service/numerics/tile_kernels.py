@@ -1,14 +1,17 @@
-"""Which compute tiles can change in the next steps: those where something happens, and what lies close to them.
+"""Which compute tiles can change in the next steps: where something happens, and what lies close to it.
 
-A cell is lively when it moves, or when its depth changed in the last step. What it does reaches two cells further with
-every step (slopes, then fluxes); a list that is renewed every `REFRESH_STEPS` = 4 steps must therefore hold every cell
-within 8 cells of a lively one. That is half a tile: each tile says in which of its quadrants it is lively, and a
-lively quadrant wakes the tiles that touch it. Dry land sleeps, and so does a lake at rest.
+A cell is lively when it moves, or when its depth changed in the last step. What it does reaches two cells
+further with every step (slopes, then fluxes); a list that is renewed every `REFRESH_STEPS` = 4 steps must
+therefore hold every cell within 8 cells of a lively one. That is half a tile: each tile says in which of
+its quadrants it is lively, and a lively quadrant wakes the tiles that touch it. Dry land sleeps, and so
+does a lake at rest.
 
-The first list of an interval takes every cell deeper than the film for lively, so that what is computed depends on the
-state alone and not on how it came to be. Water no deeper than `depth_film` does not move by itself.
+The first list of an interval takes every cell deeper than the film for lively, so that what is computed
+depends on the state alone and not on how it came to be. Water no deeper than `depth_film` does not move by
+itself.
 
-A tile's wave speed is kept while it sleeps and counts for the time step until it has been computed once after waking.
+A tile's wave speed is kept while it sleeps and counts for the time step until it has been computed once
+after waking.
 """
 
 import warp as wp

@@ -1,10 +1,11 @@
 """The Warp modules that the kernels live in, and their options.
 
-Few modules mean a short cold start, since each costs one compiler run. `step` holds the fused step of the scalar
-and CUDA engines, `rows` the SIMD step of CPUs (its native code must never reach NVRTC), `support` everything else.
+Few modules mean a short cold start, since each costs one compiler run. `step` holds the fused step of the
+scalar and CUDA engines, `rows` the SIMD step of CPUs (its native code must never reach NVRTC), `support`
+everything else.
 
-`fuse_fp` is off: without contraction a face that two cells compute apart gives both the same float, so that mass
-is conserved, and every engine gives the same bits.
+`fuse_fp` is off: without contraction a face that two cells compute apart gives both the same float, so that
+mass is conserved, and every engine gives the same bits.
 """
 
 import warp as wp

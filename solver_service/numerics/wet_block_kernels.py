@@ -2,8 +2,9 @@
 
     q = 0 if h < depth_wet, else min(max(1, round(h / scale)), 65535)
 
-A block has up to 33 x 33 vertices, the shared edges included: DRY (0) when no q is positive, WET (2) when all are, else
-PARTIAL (1). The division is float32 and halves round to even, as on the other side of the wire.
+A block has up to 33 x 33 vertices, the shared edges included: DRY (0) when no q is positive, WET (2) when
+all are, else PARTIAL (1). The division is float32 and halves round to even, as on the other side of the
+wire.
 """
 
 import warp as wp
