@@ -44,6 +44,7 @@ class RunRow:
 
     run: str
     parent: str | None
+    case: str
     title: str
     status: str
     branch_time: float | None

@@ -85,6 +85,7 @@ class RunBook:
             RunRow(
                 run=info.run,
                 parent=info.parent,
+                case=info.case,
                 title=info.title,
                 status=info.status,
                 branch_time=None if info.branch_index is None else info.branch_index * info.output_interval,

@@ -12,7 +12,7 @@ from viewer.net import ConnectionThread
 
 __all__ = ["ServiceDesk", "ServiceListener"]
 
-CREDIT = 8
+CREDIT = 16
 """Frames that may be on their way at a time."""
 
 

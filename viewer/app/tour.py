@@ -131,7 +131,7 @@ def fly_tour(session: HeadlessSession, started: float, settings: TourSettings | 
 def _watch(session: HeadlessSession, settings: TourSettings) -> None:
     """Follow the newest frame and take pictures of the front at several times."""
     app = session.app
-    session.picture("01_overview_at_the_start.png")
+    session.picture("01_overview.png")
     begun = time.monotonic()
     for number in range(settings.watch_pictures):
         share = (number + 1) / settings.watch_pictures

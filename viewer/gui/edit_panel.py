@@ -62,7 +62,9 @@ class EditPanel(QWidget):
         )
         self.edits = QListWidget()
         self.edits.setAccessibleName("Edits")
+        self.edits.setToolTip("Edits of the shown run; a new one counts from the next Recalculate on")
         self.edits.setMinimumHeight(70)
+        self.edits.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.edits.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.undo = self._action("Undo edit", QKeySequence.StandardKey.Undo, Undo())
         self.redo = self._action("Redo edit", QKeySequence("Ctrl+Y"), Redo())
@@ -89,7 +91,7 @@ class EditPanel(QWidget):
                 box.blockSignals(blocked)
         self.operation.show_choice(settings.operation)
         self.kind.show_choice(settings.type)
-        texts = [f"{row.text}{'' if row.is_applied else '  (not computed yet)'}" for row in status.edits]
+        texts = [f"{'' if row.is_applied else 'new: '}{row.text}" for row in status.edits]
         if texts != [self.edits.item(row).text() for row in range(self.edits.count())]:
             self.edits.clear()
             self.edits.addItems(texts)

@@ -80,7 +80,7 @@ class MainWindow(QMainWindow):
             self._dock("Depth at a point", self.depth_plot, Qt.DockWidgetArea.RightDockWidgetArea),
         ]
         self.resizeDocks(self.docks, [DOCK_WIDTH] * len(self.docks), Qt.Orientation.Horizontal)
-        self.resizeDocks(self.docks, [330, 360, 190], Qt.Orientation.Vertical)
+        self.resizeDocks(self.docks, [350, 340, 190], Qt.Orientation.Vertical)
         self._make_menus()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.tick)

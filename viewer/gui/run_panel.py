@@ -8,6 +8,7 @@ from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QFormLayout,
     QHBoxLayout,
+    QHeaderView,
     QLabel,
     QPushButton,
     QTreeWidget,
@@ -53,7 +54,13 @@ class RunPanel(QWidget):
         self.tree.setAccessibleName("Runs and branches")
         self.tree.setHeaderLabels(["Run", "Computed", "State"])
         self.tree.setRootIsDecorated(True)
-        self.tree.setColumnWidth(0, 130)
+        self.tree.setIndentation(14)
+        self.tree.setMinimumHeight(96)
+        self.tree.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.tree.header().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        self.tree.header().setSectionResizeMode(2, QHeaderView.ResizeMode.ResizeToContents)
+        self.tree.header().setStretchLastSection(False)
         self.tree.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.tree.itemClicked.connect(lambda item: dispatch(SelectRun(item.data(0, RUN_ROLE))))
         self.pause = self._button("Pause", "Hold the computation of the shown run", PauseRun())
@@ -126,7 +133,7 @@ class RunPanel(QWidget):
                     item.setExpanded(True)
                     if parent is not None:
                         parent.setExpanded(True)
-                label = row.title if row.branch_time is None else f"branch at {time_text(row.branch_time)}"
+                label = row.case if row.branch_time is None else f"from {time_text(row.branch_time)}"
                 item.setText(0, label)
                 item.setToolTip(0, f"{row.title} ({row.run}) on {row.device}")
                 item.setText(1, time_text(row.computed_until))

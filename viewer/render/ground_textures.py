@@ -14,6 +14,11 @@ from viewer.world.heightfield import Heightfield, Rect
 __all__ = ["GroundTextures", "height_texture"]
 
 _BAKED_SIDE_MAX = 4096
+_OUTSIDE_SHARE = 0.02
+"""If more of the map than this is exactly as high as its highest cell, that plateau is no data."""
+_SAMPLERS = ("height", "ground_colour", "edit_mask", "detail")
+_DETAIL_SIDE = 256
+_DETAIL_SEED = 33
 _LIGHT_REACH = 200
 """Cells around a change whose shade or openness may change with it."""
 
@@ -59,6 +64,7 @@ class GroundTextures:
         self.mask = ctx.texture((ncols, nrows), 1, np.full((nrows, ncols), 128, dtype=np.uint8), alignment=1)
         self.mask.repeat_x = self.mask.repeat_y = False
         self._mask_revision: int | None = None
+        self._detail = _detail_texture(ctx)
 
         scale = 1.0
         if self._imagery is not None:
@@ -77,7 +83,7 @@ class GroundTextures:
         self._program = build_program(ctx, "full_screen.vert", "bake_ground.frag")
         self._array = ctx.vertex_array(self._program, [])
         self._baked_for: tuple[object, ...] | None = None
-        self._elevation_range = (heightfield.z_min, heightfield.z_max)
+        self._elevation_range, self._outside_level = _tinted_range(heightfield.z_b)
 
     def follow(
         self, sun: tuple[float, float, float], show_imagery: bool, edits: EditOverlay | None
@@ -96,23 +102,18 @@ class GroundTextures:
         self._follow_edits(edits)
         return dirty
 
-    def bind(self, height: int, colour: int, mask: int) -> None:
-        """Bind the textures to units."""
-        self.height.use(height)
-        self.colour.use(colour)
-        self.mask.use(mask)
+    def bind(self, program: moderngl.Program) -> None:
+        """Bind the textures of `shaders/common/ground.glsl` and the heights to units 0 to 3."""
+        textures = (self.height, self.colour, self.mask, self._detail)
+        for unit, (name, texture) in enumerate(zip(_SAMPLERS, textures, strict=True)):
+            texture.use(unit)
+            set_uniforms(program, **{name: unit})
+        set_uniforms(program, has_edits=int(self._mask_revision is not None))
 
     def release(self) -> None:
         """Give the memory back."""
-        for thing in (
-            self._array,
-            self._program,
-            self._target,
-            self.colour,
-            self.mask,
-            self.height,
-            self._imagery,
-        ):
+        textures = (self.colour, self.mask, self.height, self._detail, self._imagery)
+        for thing in (self._array, self._program, self._target, *textures):
             if thing is not None:
                 thing.release()
 
@@ -133,6 +134,7 @@ class GroundTextures:
             dx=self._heightfield.grid.dx,
             sun=sun,
             elevation_range=self._elevation_range,
+            outside_level=self._outside_level,
             window=(x0 / width, y0 / height, (x1 - x0) / width, (y1 - y0) / height),
         )
         self.height.use(0)
@@ -170,3 +172,28 @@ def _imagery_texture(ctx: moderngl.Context, imagery: npt.NDArray[np.uint8]) -> m
     texture.build_mipmaps()
     texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
     return texture
+
+
+def _detail_texture(ctx: moderngl.Context) -> moderngl.Texture:
+    """A tile of grain that repeats without a seam, has no direction and averages to one half."""
+    side = _DETAIL_SIDE
+    waves = np.hypot(np.fft.fftfreq(side)[:, None], np.fft.fftfreq(side)[None, :]) * side
+    # Long waves would betray the tile; short ones carry less.
+    strength = np.where(waves > 5.0, 1.0 / np.maximum(waves, 1.0) ** 1.3, 0.0)
+    white = np.fft.fft2(np.random.default_rng(_DETAIL_SEED).normal(size=(side, side)))
+    grain = np.fft.ifft2(white * strength).real
+    pixels = np.clip(127.5 + 42.0 * (grain - grain.mean()) / grain.std(), 0, 255).astype(np.uint8)
+    texture = ctx.texture((side, side), 1, pixels, alignment=1)
+    texture.build_mipmaps()
+    texture.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
+    return texture
+
+
+def _tinted_range(z: npt.NDArray[np.float32]) -> tuple[tuple[float, float], float]:
+    """Lowest and highest ground to tint, and the level of the plateau outside of the data (or one above all)."""
+    top = float(z.max())
+    inside = z[z < top]
+    if inside.size and inside.size < (1.0 - _OUTSIDE_SHARE) * z.size:
+        low, high = np.percentile(inside[:: max(1, inside.size // 200_000)], (0.5, 99.5))
+        return (float(low), float(high)), top
+    return (float(z.min()), top), top + 1e6

@@ -9,16 +9,23 @@ from PIL import Image, ImageDraw, ImageFont
 
 from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, depth_class_labels
 
-__all__ = ["banner_panel", "depth_ramp_panel", "legend_panel", "nice_length", "scale_panel", "text_panel"]
+__all__ = [
+    "banner_panel",
+    "depth_ramp_panel",
+    "legend_panel",
+    "natural_water_colour",
+    "nice_length",
+    "scale_panel",
+    "text_panel",
+]
 
 _INK = (255, 255, 255, 255)
 _SOFT_INK = (214, 222, 230, 255)
 _PLATE = (14, 24, 34, 168)
 _MARGIN = 12
 
-NATURAL_RAMP = ((128, 160, 150), (88, 140, 155), (58, 110, 145), (36, 84, 124), (20, 62, 104))
-"""Roughly what water of the depths in `depth_ramp_panel` looks like."""
-NATURAL_RAMP_DEPTHS = ("0", "0.5", "1", "3", "10 m")
+NATURAL_RAMP_DEPTHS = (0.0, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
+"""Depths marked on the ramp of natural water [m]."""
 
 
 @cache
@@ -57,6 +64,19 @@ def text_panel(title: str, time: str, detail: str, scale: float) -> Image.Image:
     return image
 
 
+def natural_water_colour(depth: float) -> tuple[int, int, int]:
+    """SRGB of water over light ground seen from above, by the formulas of `shaders/water.frag`."""
+    ground, absorption = (0.60, 0.61, 0.42), (0.95, 0.38, 0.30)
+    shallow, deep = (0.27, 0.48, 0.53), (0.06, 0.21, 0.37)
+    darkness = 1.0 - math.exp(-0.22 * depth)
+    veil = 1.0 - 0.38 * min(depth / 0.12, 1.0)
+    colour = []
+    for g, a, s, d in zip(ground, absorption, shallow, deep, strict=True):
+        through = veil * math.exp(-0.75 * a * depth)
+        colour.append(round(255.0 * (g * through + (s + (d - s) * darkness) * (1.0 - through))))
+    return (colour[0], colour[1], colour[2])
+
+
 def legend_panel(scale: float) -> Image.Image:
     """The depth classes with their limits in metres."""
     labels = depth_class_labels()
@@ -79,17 +99,23 @@ def legend_panel(scale: float) -> Image.Image:
 
 
 def depth_ramp_panel(scale: float) -> Image.Image:
-    """A hint at what natural water of different depths looks like."""
+    """What natural water of different depths looks like from above; depths in metres."""
     size, margin = round(15 * scale), round(_MARGIN * scale)
-    step, bar = round(42 * scale), round(14 * scale)
-    width = step * len(NATURAL_RAMP) + 2 * margin
-    image, draw = _plate(width, round(66 * scale) + margin)
-    draw.text((margin, round(8 * scale)), "Water depth", font=_font(size), fill=_INK)
+    step, bar = round(38 * scale), round(14 * scale)
+    parts = len(NATURAL_RAMP_DEPTHS) - 1
+    image, draw = _plate(step * parts + 2 * margin, round(66 * scale) + margin)
+    draw.text((margin, round(8 * scale)), "Water depth [m]", font=_font(size), fill=_INK)
     y = round(34 * scale)
-    for k, (colour, text) in enumerate(zip(NATURAL_RAMP, NATURAL_RAMP_DEPTHS, strict=True)):
-        x = margin + k * step
-        draw.rectangle((x, y, x + step - 1, y + bar), fill=(*colour, 255))
-        draw.text((x + 1, y + bar + round(3 * scale)), text, font=_font(round(13 * scale)), fill=_SOFT_INK)
+    for pixel in range(step * parts):
+        part, share = divmod(pixel / step, 1.0)
+        low, high = NATURAL_RAMP_DEPTHS[int(part)], NATURAL_RAMP_DEPTHS[int(part) + 1]
+        colour = natural_water_colour(low + share * (high - low))
+        draw.line((margin + pixel, y, margin + pixel, y + bar), fill=(*colour, 255))
+    for part, depth in enumerate(NATURAL_RAMP_DEPTHS):
+        x = margin + part * step
+        draw.line((x, y, x, y + bar + round(3 * scale)), fill=_SOFT_INK)
+        place = (x, y + bar + round(5 * scale))
+        draw.text(place, f"{depth:g}", font=_font(round(13 * scale)), fill=_SOFT_INK, anchor="mt")
     return image
 
 

@@ -48,7 +48,7 @@ class HudPass:
         target.viewport = (0, 0, *size)
         self._ctx.enable_only(moderngl.BLEND)
         self._ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-        scale = min(max(size[1] / 720.0, 0.6), 3.0)
+        scale = min(max(min(size[1] / 720.0, size[0] / 1280.0), 0.6), 3.0)
         edge = round(_EDGE * scale)
         draws = self._draw_corners(hud, inputs, size, scale, edge)
         top = edge
@@ -61,7 +61,8 @@ class HudPass:
                 texture = self._panel(
                     name, (text, scale), partial(hud_panels.banner_panel, text, scale, alert)
                 )
-                self._blit(texture, size, (size[0] - texture.width) // 2, top)
+                left, top = self._beside_text(texture, size, edge, top)
+                self._blit(texture, size, left, top)
                 top += texture.height + edge // 2
                 draws += 1
         return draws
@@ -96,6 +97,19 @@ class HudPass:
             self._blit(texture, size, size[0] - texture.width - edge, size[1] - texture.height - edge)
             draws += 1
         return draws
+
+    def _beside_text(
+        self, banner: moderngl.Texture, size: tuple[int, int], edge: int, top: int
+    ) -> tuple[int, int]:
+        """Left and top of a banner: in the middle, else right of the text panel, else below it."""
+        left = (size[0] - banner.width) // 2
+        text = self._panels.get("text")
+        if text is None or left >= edge + text.texture.width or top >= edge + text.texture.height:
+            return left, top
+        beside = edge + text.texture.width + edge // 2
+        if beside + banner.width + edge <= size[0]:
+            return beside, top
+        return edge, max(top, edge + text.texture.height + edge // 2)
 
     def _panel(self, name: str, says: Hashable, make: Callable[[], Image.Image]) -> moderngl.Texture:
         panel = self._panels.get(name)

@@ -209,19 +209,20 @@ class Renderer:
         scene.framebuffer.viewport = (0, 0, *scene.size)
         scene.framebuffer.clear(*options.background, 1.0)
         draws = 0
-        if options.show_sky:
-            rotation = view.copy()
-            rotation[:3, 3] = 0.0
-            draws += self._sky.draw(np.asarray(np.linalg.inv(projection @ rotation), dtype=np.float64))
-        if options.show_terrain:
-            draws += self._terrain.draw(self._ground, selection.terrain, options)
-        if options.show_skirt:
-            draws += self._skirt.draw(self._ground, selection)
+        # Front to back: water hides ground, ground hides sky, and what is hidden is not shaded.
         if slots is not None and inputs.water is not None:
             alpha = inputs.water.alpha
             draws += self._water.draw(self._ground, slots, alpha, self._sky.texture, selection.water, options)
             if options.show_skirt:
                 draws += self._skirt.draw(self._ground, selection, slots, alpha)
+        if options.show_terrain:
+            draws += self._terrain.draw(self._ground, selection.terrain, options)
+        if options.show_skirt:
+            draws += self._skirt.draw(self._ground, selection)
+        if options.show_sky:
+            rotation = view.copy()
+            rotation[:3, 3] = 0.0
+            draws += self._sky.draw(np.asarray(np.linalg.inv(projection @ rotation), dtype=np.float64))
         if inputs.edits is not None:
             draws += self._lines.draw(inputs.edits.lines)
         return draws

@@ -16,7 +16,7 @@ __all__ = ["SkyPass", "sky_faces"]
 
 _SIDE = 256
 _ZENITH = np.array([0.24, 0.45, 0.76])
-_BELOW = np.array([0.66, 0.71, 0.74])
+_BELOW = np.array([0.47, 0.53, 0.59])
 _SEED = 1959
 
 
@@ -52,8 +52,10 @@ def _colour(direction: npt.NDArray[np.float64], sun: npt.NDArray[np.float64]) ->
     cover = cover * np.clip((up - 0.04) * 5.0, 0.0, 1.0) * 0.75
     colour = colour + cover * (np.array([0.97, 0.97, 0.98]) - colour)
 
-    blend = np.clip(-up * 12.0, 0.0, 1.0)
-    return colour * (1.0 - blend) + _BELOW * blend
+    # Below the horizon there is no map: a plain haze that darkens downward.
+    depth = np.clip(-up, 0.0, 1.0)
+    below = np.array(HORIZON) + (_BELOW - np.array(HORIZON)) * (1.0 - (1.0 - depth) ** 3.0)
+    return np.where(up >= 0.0, colour, below)
 
 
 def _cloud_noise(plane: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
@@ -82,7 +84,7 @@ class SkyPass:
         """Compile; the sky itself is made when the sun is known."""
         self._ctx = ctx
         self._program = build_program(ctx, "full_screen.vert", "sky.frag")
-        set_uniforms(self._program, sky=0)
+        set_uniforms(self._program, sky=0, far_plane=1.0)
         self._array = ctx.vertex_array(self._program, [])
         self._sun: tuple[float, float, float] | None = None
         self.texture = ctx.texture_cube((_SIDE, _SIDE), 3)
@@ -103,7 +105,9 @@ class SkyPass:
         Args:
             direction_of_place: inverse of projection times rotation of the view, shape [4, 4].
         """
-        self._ctx.enable_only(moderngl.NOTHING)
+        # Last of the scene and behind all of it, so that only what is still open is filled.
+        self._ctx.enable_only(moderngl.DEPTH_TEST)
+        self._ctx.depth_func = "<="
         self.texture.use(0)
         set_uniforms(self._program, direction_of_place=tuple(direction_of_place.T.ravel().tolist()))
         self._array.render(moderngl.TRIANGLES, vertices=3)

@@ -24,7 +24,6 @@ class TerrainPass:
         """Compile and allocate."""
         self._ctx = ctx
         self._program = build_program(ctx, "terrain.vert", "terrain.frag")
-        set_uniforms(self._program, height=0, ground_colour=1, edit_mask=2)
         self._blocks = BlockInstances(ctx, self._program, indices, tiling.block_count)
 
     def draw(
@@ -37,7 +36,7 @@ class TerrainPass:
         # The ground steps back a hair, so that water lying on it wins.
         ctx.polygon_offset = (0.0, 2.0)
         ctx.wireframe = options.wireframe
-        ground.bind(height=0, colour=1, mask=2)
+        ground.bind(self._program)
         set_uniforms(self._program, snap_edges=int(options.snap_edges))
         draws = self._blocks.draw(by_level)
         ctx.wireframe = False

@@ -22,10 +22,11 @@ from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, DEPTH_CLASS_LIMITS
 __all__ = ["WaterPass", "ripple_slopes"]
 
 _UNITS = (
-    *("height", "ground_colour", "edit_mask", "sky", "ripples"),
+    *("sky", "ripples"),
     *("bed_first", "bed_second", "depth_first", "depth_second", "slope_first", "slope_second"),
 )
-"""Samplers in the order of their texture units."""
+"""Samplers in the order of their texture units, after those of the ground."""
+_FIRST_UNIT = 4
 _RIPPLE_SIDE = 256
 _SEED = 2011
 
@@ -54,7 +55,7 @@ class WaterPass:
         """Compile and allocate."""
         self._ctx = ctx
         self._program = build_program(ctx, "water.vert", "water.frag")
-        set_uniforms(self._program, **{name: unit for unit, name in enumerate(_UNITS)})
+        set_uniforms(self._program, **{name: unit for unit, name in enumerate(_UNITS, start=_FIRST_UNIT)})
         set_uniforms(
             self._program,
             class_limits=list(DEPTH_CLASS_LIMITS),
@@ -63,7 +64,7 @@ class WaterPass:
         self._blocks = BlockInstances(ctx, self._program, indices, tiling.block_count)
         self._ripples = ctx.texture((_RIPPLE_SIDE, _RIPPLE_SIDE), 2, ripple_slopes())
         self._ripples.build_mipmaps()
-        self._ripples.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        self._ripples.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
 
     def draw(
         self,
@@ -78,11 +79,10 @@ class WaterPass:
         first, second = slots
         assert first.bed is not None
         assert second.bed is not None
-        ground.bind(height=0, colour=1, mask=2)
-        sky.use(3)
-        self._ripples.use(4)
-        textures = (first.bed, second.bed, first.depth, second.depth, first.slope, second.slope)
-        for unit, texture in enumerate(textures, start=5):
+        ground.bind(self._program)
+        sky.use(_FIRST_UNIT)
+        frames = (first.bed, second.bed, first.depth, second.depth, first.slope, second.slope)
+        for unit, texture in enumerate((self._ripples, *frames), start=_FIRST_UNIT + 1):
             texture.use(unit)
         self._ctx.enable_only(moderngl.DEPTH_TEST)
         self._ctx.depth_func = "<="

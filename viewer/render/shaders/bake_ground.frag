@@ -7,15 +7,16 @@ uniform int has_imagery;
 uniform vec2 cells;            // columns, rows
 uniform float dx;              // [m]
 uniform vec3 sun;              // unit vector to the sun, world axes
-uniform vec2 elevation_range;  // lowest and highest ground [m]
+uniform vec2 elevation_range;  // lowest and highest ground that is tinted [m]
+uniform float outside_level;   // ground exactly as high as this lies outside of the data
 uniform vec4 window;           // part of the texture being baked: origin and size, 0 to 1
 out vec4 colour;
 
 // Hypsometric tints of the ground, low to high.
 const int TINTS = 7;
 const vec3 TINT[TINTS] = vec3[](
-    vec3(0.44, 0.55, 0.33), vec3(0.53, 0.61, 0.37), vec3(0.65, 0.67, 0.43), vec3(0.74, 0.69, 0.49),
-    vec3(0.72, 0.62, 0.46), vec3(0.66, 0.58, 0.50), vec3(0.86, 0.84, 0.82));
+    vec3(0.47, 0.55, 0.34), vec3(0.54, 0.60, 0.37), vec3(0.62, 0.64, 0.42), vec3(0.66, 0.63, 0.45),
+    vec3(0.62, 0.57, 0.43), vec3(0.58, 0.53, 0.44), vec3(0.68, 0.65, 0.60));
 
 vec3 hypsometric(float t) {
     float at = clamp(t, 0.0, 1.0) * float(TINTS - 1);
@@ -76,10 +77,10 @@ float sunlight(vec2 uv, float z) {
 
 void main() {
     vec2 uv = window.xy + place * window.zw;
-    vec2 step = 1.0 / cells;
+    vec2 texel = 1.0 / cells;
     float z = smooth_ground(uv);
-    float e = smooth_ground(uv + vec2(step.x, 0.0)), w = smooth_ground(uv - vec2(step.x, 0.0));
-    float n = smooth_ground(uv + vec2(0.0, step.y)), s = smooth_ground(uv - vec2(0.0, step.y));
+    float e = smooth_ground(uv + vec2(texel.x, 0.0)), w = smooth_ground(uv - vec2(texel.x, 0.0));
+    float n = smooth_ground(uv + vec2(0.0, texel.y)), s = smooth_ground(uv - vec2(0.0, texel.y));
     vec3 normal = normalize(vec3(w - e, 2.0 * dx, n - s));
 
     vec3 albedo;
@@ -91,20 +92,26 @@ void main() {
         float patches = noise(metres / 160.0) * 0.55 + noise(metres / 53.0) * 0.3 + noise(metres / 17.0) * 0.15;
         albedo = hypsometric(sqrt(max(t, 0.0)) + 0.10 * (patches - 0.5));
         float steepness = 1.0 - normal.y;
-        albedo = mix(albedo, vec3(0.52, 0.47, 0.42), smoothstep(0.06, 0.30, steepness));
-        albedo *= 0.90 + 0.20 * patches;
+        // Slopes too steep to plough are wooded, cliffs are bare.
+        albedo = mix(albedo, vec3(0.38, 0.45, 0.29), 0.75 * smoothstep(0.012, 0.07, steepness));
+        albedo = mix(albedo, vec3(0.52, 0.48, 0.43), smoothstep(0.16, 0.40, steepness));
+        albedo *= 0.88 + 0.24 * patches;
     }
 
     // Sky light by openness: hollows darker, ridges lighter, at three scales.
     float open = 0.0;
     for (int k = 0; k < 3; ++k) {
         float r = 3.0 * pow(3.0, float(k));
-        float around = 0.25 * (ground(uv + vec2(r, 0.0) * step) + ground(uv - vec2(r, 0.0) * step)
-                             + ground(uv + vec2(0.0, r) * step) + ground(uv - vec2(0.0, r) * step));
+        float around = 0.25 * (ground(uv + vec2(r, 0.0) * texel) + ground(uv - vec2(r, 0.0) * texel)
+                             + ground(uv + vec2(0.0, r) * texel) + ground(uv - vec2(0.0, r) * texel));
         open += clamp((z - around) / (r * dx), -0.35, 0.35);
     }
     float sky = clamp(0.92 + 0.55 * open, 0.45, 1.2);
     float direct = max(dot(normal, sun), 0.0) * sunlight(uv, z);
-    vec3 light = direct * vec3(1.06, 0.99, 0.88) * 0.98 + sky * (0.5 + 0.5 * normal.y) * vec3(0.36, 0.41, 0.50);
-    colour = vec4(albedo * light, 1.0);
+    float outside = smoothstep(outside_level - 3.0, outside_level, z);
+    albedo = mix(albedo, vec3(0.58, 0.58, 0.57), outside);
+    direct = mix(direct, sun.y, outside);
+    sky = mix(max(sky, 0.6 * step(1e-3, outside)), 1.0, outside);
+    vec3 light = direct * vec3(1.06, 0.99, 0.88) * 0.98 + sky * (0.62 + 0.38 * normal.y) * vec3(0.36, 0.41, 0.50);
+    colour = vec4(albedo * light, has_imagery != 0 ? 0.0 : 1.0 - outside);
 }

@@ -1,9 +1,10 @@
 #version 410 core
 // One triangle that covers the picture.
 out vec2 place;
+uniform float far_plane; // 1 puts the triangle behind everything
 
 void main() {
     vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
     place = 0.5 * corner + 0.5;
-    gl_Position = vec4(corner, 0.0, 1.0);
+    gl_Position = vec4(corner, far_plane, 1.0);
 }

@@ -38,5 +38,7 @@ void main() {
     normal = in_side.x == 0u ? vec3(-1, 0, 0) : in_side.x == 1u ? vec3(1, 0, 0) : in_side.x == 2u ? vec3(0, 0, 1) : vec3(0, 0, -1);
     vec3 world = world_of_cell(vec2(cell), elevation);
     clear_air = air_transmission(world);
-    gl_Position = view_projection * vec4(world, 1.0);
+    // Walls on the far side of the map face away; only their rim would show, as a ragged line.
+    bool faces_eye = dot(normal, eye.xyz - world) > 0.0;
+    gl_Position = faces_eye ? view_projection * vec4(world, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }

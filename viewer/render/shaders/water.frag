@@ -15,8 +15,8 @@ uniform vec3 class_colours[7];
 out vec4 colour;
 
 const vec3 ABSORPTION = vec3(0.95, 0.38, 0.30); // [1/m]
-const vec3 SCATTER_SHALLOW = vec3(0.26, 0.47, 0.52);
-const vec3 SCATTER_DEEP = vec3(0.045, 0.20, 0.36);
+const vec3 SCATTER_SHALLOW = vec3(0.27, 0.48, 0.53);
+const vec3 SCATTER_DEEP = vec3(0.06, 0.21, 0.37);
 const float F0 = 0.0204;                        // ((1 - 1.333) / (1 + 1.333))^2
 
 vec3 class_colour(float h) {
@@ -58,14 +58,15 @@ void main() {
         surface += edge * 0.12 * fresnel * texture(sky, reflect(sight, normal)).rgb;
     } else {
         vec3 through = exp(-ABSORPTION * path * 0.75);
-        vec3 scatter = mix(SCATTER_SHALLOW, SCATTER_DEEP, 1.0 - exp(-depth * 0.28));
+        vec3 scatter = mix(SCATTER_SHALLOW, SCATTER_DEEP, 1.0 - exp(-depth * 0.22));
         // Flood water is never clear: even a thin sheet veils the ground, so that its extent can be read from afar.
         through *= 1.0 - 0.38 * edge;
         surface = bottom * through + scatter * (1.0 - through);
         vec3 mirror = reflect(sight, normal);
         mirror.y = abs(mirror.y);
-        vec3 reflected = texture(sky, mirror).rgb;
-        float glint = pow(max(dot(mirror, sun.xyz), 0.0), 350.0) * 1.6;
+        // The sun's own disc is left to the glint: mirrored in long swells it would blind whole reaches.
+        vec3 reflected = min(texture(sky, mirror).rgb, vec3(0.93, 0.95, 0.97));
+        float glint = pow(max(dot(mirror, sun.xyz), 0.0), 400.0) * 0.9 * lively;
         surface = mix(surface, reflected, fresnel * edge) + glint * edge * vec3(1.0, 0.95, 0.85);
     }
     colour = vec4(mix(horizon.rgb, surface, clear_air), 1.0);

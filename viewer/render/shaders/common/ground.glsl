@@ -1,15 +1,20 @@
 // The colour of the ground, lit, with edit marks and contour lines; the same for dry ground and for a river's bottom.
-uniform sampler2D ground_colour; // baked: colour times light
+uniform sampler2D ground_colour; // baked: colour times light; alpha: how much grain it takes
 uniform sampler2D edit_mask;     // 0 lowered, 0.5 untouched, 1 raised
+uniform sampler2D detail;        // grain of the ground near the eye, 0.5 on average
+uniform int has_edits;
 
 const vec3 RAISED = vec3(0.93, 0.45, 0.10);
 const vec3 LOWERED = vec3(0.16, 0.36, 0.85);
 
 vec3 ground_at(vec2 uv, float elevation) {
-    vec3 colour = texture(ground_colour, uv).rgb;
-    float mark = texture(edit_mask, uv).r * (255.0 / 127.0) - 128.0 / 127.0;
-    float light = 0.45 + 0.75 * dot(colour, vec3(0.299, 0.587, 0.114));
-    colour = mix(colour, (mark > 0.0 ? RAISED : LOWERED) * light, 0.8 * clamp(abs(mark), 0.0, 1.0));
+    vec4 baked = texture(ground_colour, uv);
+    vec3 colour = baked.rgb * (1.0 + baked.a * 0.36 * (texture(detail, uv * grid.xy / 20.0).r - 0.5));
+    if (has_edits != 0) {
+        float mark = texture(edit_mask, uv).r * (255.0 / 127.0) - 128.0 / 127.0;
+        float light = 0.45 + 0.75 * dot(colour, vec3(0.299, 0.587, 0.114));
+        colour = mix(colour, (mark > 0.0 ? RAISED : LOWERED) * light, 0.8 * clamp(abs(mark), 0.0, 1.0));
+    }
     if (vertical.z > 0.0) {
         float turns = elevation / vertical.z;
         float slope = max(fwidth(turns), 1e-6);
