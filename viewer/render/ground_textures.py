@@ -190,7 +190,7 @@ def _detail_texture(ctx: moderngl.Context) -> moderngl.Texture:
 
 
 def _tinted_range(z: npt.NDArray[np.float32]) -> tuple[tuple[float, float], float]:
-    """Lowest and highest ground to tint, and the level of the plateau outside of the data (or one above all)."""
+    """Lowest and highest ground to tint, and the level of the plateau that stands for no data."""
     top = float(z.max())
     inside = z[z < top]
     if inside.size and inside.size < (1.0 - _OUTSIDE_SHARE) * z.size:

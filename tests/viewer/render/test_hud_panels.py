@@ -62,4 +62,4 @@ def test_an_alert_is_red_and_a_remark_amber() -> None:
 
 @pytest.mark.parametrize("scale", [0.6, 1.0, 2.5])
 def test_panels_grow_with_the_picture(scale: float) -> None:
-    assert hud_panels.depth_ramp_panel(scale).width == pytest.approx(234 * scale, rel=0.05)
+    assert hud_panels.depth_ramp_panel(scale).width == pytest.approx(252 * scale, rel=0.05)
