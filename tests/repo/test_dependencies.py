@@ -80,7 +80,7 @@ def test_what_a_folder_imports_its_extra_asks_for(folder: str, extras: tuple[str
 
 @pytest.mark.parametrize(
     ("extra", "folders"),
-    [("solver", ("solver_service",)), ("viewer", ("viewer",)), ("dev", ("tests", "bench", "examples", "solver_service"))],
+    [("solver", ("solver_service",)), ("viewer", ("viewer",)), ("dev", ("tests", "bench", "examples"))],
 )
 def test_nothing_is_asked_for_in_vain(extra: str, folders: tuple[str, ...]) -> None:
     imported = {name for folder in folders for name in distributions_imported_by(folder)}
