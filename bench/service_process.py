@@ -96,6 +96,10 @@ class ServiceClient:
         service: where to connect.
         resume: what was last known, for a connection that replaces a lost one.
         grants_credit: whether each frame received is paid with a new credit at once.
+        layout: blocks of the grid, to decode every frame as it comes.
+
+    Attributes:
+        decoded: the frames received so far by run and index, where a layout was given.
     """
 
     def __init__(
@@ -103,9 +107,12 @@ class ServiceClient:
         service: ServiceProcess,
         resume: protocol.ResumePoint | None = None,
         grants_credit: bool = True,
+        layout: protocol.BlockLayout | None = None,
     ) -> None:
         self.session = protocol.ClientSession("fev-bench")
         self.grants_credit = grants_credit
+        self.decoded: dict[tuple[str, int], protocol.DecodedFrame] = {}
+        self._decoder = protocol.FrameDecoder(layout) if layout is not None else None
         self._service = service
         self._resume = resume
         self._connection: ClientConnection
@@ -141,8 +148,11 @@ class ServiceClient:
             data = self._connection.recv(timeout=max(ends - time.monotonic(), 0.0))
             assert isinstance(data, bytes)
             for event in self.session.receive(data):
-                if isinstance(event, protocol.Frame) and self.grants_credit:
-                    self.send(protocol.Credit(1))
+                if isinstance(event, protocol.Frame):
+                    if self._decoder is not None:
+                        self.decoded[event.run, event.index] = self._decoder.decode(event)
+                    if self.grants_credit:
+                        self.send(protocol.Credit(1))
                 if wanted(event):
                     return event
 

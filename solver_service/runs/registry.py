@@ -273,7 +273,8 @@ class RunRegistry:
         """
         run = self.tree.get(name)
         async with run.lock:
-            if self.tree.frame(name, index) is None:
+            parent = self.tree.branch_parent(name, index)
+            if self.tree.frame(parent.run, index) is None:
                 raise RunError(
                     f"frame {index} of run {name} is not computed yet; "
                     f"0 to {run.frame_count - 1} can be branched"
@@ -283,7 +284,6 @@ class RunRegistry:
                     f"the edits of run {name} are at revision {run.edit_log.revision}, not {revision}; "
                     "look at them again"
                 )
-            parent = self.tree.branch_parent(name, index)
             record = replace(
                 parent.record,
                 run=_new_id(),

@@ -167,22 +167,25 @@ class RunLoop:
         return 0, None
 
     def _advance(self) -> None:
-        """Compute up to the next branch point or the next frame, or until a command comes."""
+        """Compute up to the next frame time, or until a command comes.
+
+        A replay lands on every frame time too, as the first computation did: the time step is cut there.
+        """
         course, computation = self._course, self._computation
         assert course is not None
         assert computation is not None
         begin = course.begin
-        replaying = not course.is_own
-        index = begin.legs[course.position + 1].first_index if replaying else course.next_index
+        index = course.next_index
         if not computation.advance_to(index * begin.output_interval, self._should_stop):
             return
-        if replaying:
+        while not course.is_own and begin.legs[course.position + 1].first_index == index:
             course.position += 1
             computation.enter(begin.legs[course.position])
+        course.next_index = index + 1
+        if not course.is_own:
             return
         if index >= begin.stored_frames:
             self._publish(course, computation, index)
-        course.next_index = index + 1
         course.finished = index >= begin.last_index
         if course.finished or (begin.paused and index == begin.legs[-1].first_index):
             course.computing = False
@@ -338,10 +341,10 @@ class _Course:
 
 
 def _next_index(begin: Begin, position: int, time: float) -> int:
-    """The frame to compute next: the first one after `time`, or the one at `time` if it is not stored yet."""
-    if position < len(begin.legs) - 1:
-        return begin.legs[-1].first_index
+    """The frame time to land on next: the first after `time`, or `time` itself if something is due there."""
+    own = position == len(begin.legs) - 1
+    due = begin.stored_frames if own else begin.legs[position + 1].first_index
     nearest = round(time / begin.output_interval)
     if nearest * begin.output_interval == time:
-        return nearest if nearest >= begin.stored_frames else nearest + 1
+        return nearest if nearest >= due else nearest + 1
     return int(time // begin.output_interval) + 1

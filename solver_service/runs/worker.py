@@ -24,7 +24,7 @@ from solver_service.runs.worker_messages import (
 )
 from solver_service.runs.worker_process import start_worker
 
-QUIT_TIMEOUT_S = 4.0
+QUIT_TIMEOUT_S = 3.0
 _numbers = itertools.count(1)
 
 
@@ -121,7 +121,9 @@ class Worker:
         return await self._saved
 
     async def quit(self) -> None:
-        """End it: politely, then not."""
+        """End it: politely, then not; one that is still starting has nothing to lose."""
+        if not self._ready.is_set():
+            self.kill()
         self.send(Quit())
         try:
             await asyncio.wait_for(self._dead.wait(), QUIT_TIMEOUT_S)

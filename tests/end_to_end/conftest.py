@@ -3,7 +3,8 @@ from collections.abc import Iterator
 import pytest
 
 from bench.service_process import ServiceClient, ServiceProcess
-from tests.end_to_end.dam_break import write_dam_break
+from protocol import BlockLayout
+from tests.end_to_end.dam_break import CELLS, write_dam_break
 
 
 @pytest.fixture(scope="session")
@@ -19,5 +20,5 @@ def service(tmp_path_factory: pytest.TempPathFactory, case: str) -> Iterator[Ser
 
 @pytest.fixture
 def client(service: ServiceProcess) -> Iterator[ServiceClient]:
-    with ServiceClient(service) as client:
+    with ServiceClient(service, layout=BlockLayout(CELLS, CELLS)) as client:
         yield client

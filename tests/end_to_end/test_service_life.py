@@ -1,6 +1,5 @@
 """Begin, end, and sudden death of whole services."""
 
-import os
 import signal
 import socket
 import subprocess
@@ -11,14 +10,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-import pytest
+import psutil
 from websockets.client import ClientProtocol
 from websockets.protocol import State
 from websockets.uri import parse_uri
 
 import protocol
 from bench.service_process import ServiceClient, ServiceProcess
-from protocol import BlockLayout, FrameDecoder
+from protocol import BlockLayout
 from tests.end_to_end.dam_break import CELLS, levee
 
 LAST = 20
@@ -27,11 +26,9 @@ LAYOUT = BlockLayout(CELLS, CELLS)
 
 def frames(client: ServiceClient, run: str) -> dict[int, np.ndarray]:
     client.do(protocol.Subscribe, run=run, from_index=0, mode="replay", credit=8)
-    decoder, found = FrameDecoder(LAYOUT), {}
-    while LAST not in found:
-        frame = decoder.decode(client.first(protocol.Frame))
-        found.setdefault(frame.index, frame.q)
-    return found
+    while not all((run, index) in client.decoded for index in range(LAST + 1)):
+        client.first(protocol.Frame)
+    return {index: client.decoded[run, index].q for index in range(LAST + 1)}
 
 
 def wait_for(client: ServiceClient, run: str, status: str) -> protocol.RunInfo:
@@ -46,7 +43,7 @@ def test_a_service_killed_in_the_middle_of_a_run_loses_nothing_and_goes_on_exact
     tmp_path: Path, case: str
 ) -> None:
     options = {"cases": [case], "threads": 2, "checkpoint_interval_s": 0.02}
-    with ServiceProcess(tmp_path, **options) as service, ServiceClient(service) as client:
+    with ServiceProcess(tmp_path, **options) as service, ServiceClient(service, layout=LAYOUT) as client:
         whole = str(client.do(protocol.StartRun, case=case)["run"])
         client.do(protocol.AppendEdit, run=whole, edit=levee("dike"))
         client.do(protocol.Subscribe, run=whole, credit=8)
@@ -58,7 +55,7 @@ def test_a_service_killed_in_the_middle_of_a_run_loses_nothing_and_goes_on_exact
         seen = client.first(protocol.Frame, lambda frame: frame.run == run and frame.index >= 6).index
         service.process.kill()
         service.process.wait()
-    with ServiceProcess(tmp_path, **options) as service, ServiceClient(service) as client:
+    with ServiceProcess(tmp_path, **options) as service, ServiceClient(service, layout=LAYOUT) as client:
         infos = {info.run: info for info in client.ask(protocol.ListRuns).runs}
         assert infos[whole].status == "finished"
         assert infos[whole].frame_count == LAST + 1
@@ -155,22 +152,9 @@ def test_a_second_service_on_the_same_data_or_port_is_refused_in_one_sentence(
 def test_no_process_outlives_a_service_that_was_killed(tmp_path: Path, case: str) -> None:
     with ServiceProcess(tmp_path, cases=[case]) as service, ServiceClient(service) as client:
         client.do(protocol.StartRun, case=case)
-        children = Path(f"/proc/{service.process.pid}/task/{service.process.pid}/children")
-        if not children.exists():
-            pytest.skip("the children of a process are listed on Linux only")
-        pids = [int(pid) for pid in children.read_text().split()]
-        assert pids
+        children = psutil.Process(service.process.pid).children(recursive=True)
+        assert children
         service.process.kill()
         service.process.wait()
-        ends = time.monotonic() + 10.0
-        while any(_lives(pid) for pid in pids):
-            assert time.monotonic() < ends, "a worker lives on without its service"
-            time.sleep(0.05)
-
-
-def _lives(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-        return "Z" not in Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except (ProcessLookupError, FileNotFoundError):
-        return False
+        _, alive = psutil.wait_procs(children, timeout=10.0)
+        assert not alive, "a worker lives on without its service"

@@ -5,7 +5,7 @@ import pytest
 
 import protocol
 from bench.service_process import ServiceClient, ServiceProcess
-from protocol import BlockLayout, FrameDecoder, apply_edits
+from protocol import BlockLayout, apply_edits
 from solver_service.scenario import load_case
 from tests.end_to_end.dam_break import CELLS, OUTPUT_INTERVAL, levee
 
@@ -29,12 +29,16 @@ def finish(client: ServiceClient, run: str) -> protocol.RunInfo:
 def replay(client: ServiceClient, run: str, first: int = 0, last: int = LAST) -> list[protocol.DecodedFrame]:
     """Frames of a run in order, decoded."""
     client.do(protocol.Subscribe, run=run, from_index=first, mode="replay", credit=8)
-    decoder, frames = FrameDecoder(LAYOUT), {}
-    while last not in frames:
-        decoded = decoder.decode(client.first(protocol.Frame))
-        frames.setdefault(decoded.index, decoded)
+    info = next(info for info in client.ask(protocol.ListRuns).runs if info.run == run)
+    owners = [
+        next(leg.run for leg in reversed(info.lineage) if leg.first_index <= index)
+        for index in range(first, last + 1)
+    ]
+    wanted = list(zip(owners, range(first, last + 1), strict=True))
+    while not all(name in client.decoded for name in wanted):
+        client.first(protocol.Frame)
     client.do(protocol.Unsubscribe)
-    return [frames[index] for index in range(first, last + 1)]
+    return [client.decoded[name] for name in wanted]
 
 
 def recalculate(client: ServiceClient, run: str, index: int, **options: bool) -> str:
@@ -46,7 +50,7 @@ def recalculate(client: ServiceClient, run: str, index: int, **options: bool) ->
 @pytest.fixture(scope="module")
 def flood(service: ServiceProcess, case: str) -> tuple[str, list[protocol.DecodedFrame]]:
     """A run that nobody edited, to its end."""
-    with ServiceClient(service) as client:
+    with ServiceClient(service, layout=LAYOUT) as client:
         run = start(client, case)
         finish(client, run)
         return run, replay(client, run)
@@ -90,8 +94,7 @@ def test_a_recalculation_begins_at_the_frame_itself_on_the_edited_bed(
     frame = client.first(protocol.Frame, lambda frame: frame.run == child)
     assert (frame.index, frame.time, frame.revision, frame.is_key) == (5, 25.0, 1, True)
 
-    decoder = FrameDecoder(LAYOUT)
-    edited = decoder.decode(frame)
+    edited = client.decoded[child, 5]
     (before,) = replay(client, run, 5, 5)
     raised = apply_edits(load_case(case).z_b, [edit], load_case(case).grid).z_b - load_case(case).z_b
     expected = np.maximum(before.h - raised, 0.0)
@@ -124,11 +127,12 @@ def test_an_edit_taken_back_and_recalculated_at_the_same_frame_leaves_no_trace(
     run, frames = flood
     client.do(protocol.AppendEdit, run=run, edit=levee("dike", y=200.0))
     child = recalculate(client, run, 7)
-    assert client.do(protocol.UndoEdit, run=child)["revision"] == 2
+    assert (replay(client, child, 7, 7)[0].q != frames[7].q).any()
+    revision = next(info.revision for info in client.ask(protocol.ListRuns).runs if info.run == child)
+    assert client.do(protocol.UndoEdit, run=child)["revision"] == revision + 1
     grandchild = recalculate(client, child, 7)
     client.do(protocol.UndoEdit, run=run)
     finish(client, grandchild)
-    assert (replay(client, child, 7, 7)[0].q != frames[7].q).any()
     for frame, undisturbed in zip(replay(client, grandchild, 7), frames[7:], strict=True):
         np.testing.assert_array_equal(frame.q, undisturbed.q)
 
