@@ -153,6 +153,11 @@ class RenderOptions:
     """Let far ground fade into the horizon."""
     samples: int = 0
     """Multisampling: 0 or 4."""
+    render_scale: float = 1.0
+    """Pixels of the scene for each pixel of the picture, along one side.
+
+    Below 1 for slow machines, 2 for smooth pictures; panels stay as sharp as they are.
+    """
     background: tuple[float, float, float] = (0.62, 0.70, 0.80)
     """Colour behind everything where no sky is drawn."""
 

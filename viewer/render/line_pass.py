@@ -52,20 +52,20 @@ class LinePass:
         self._ctx = ctx
         self._heightfield = heightfield
         self._program = build_program(ctx, "line.vert", "line.frag")
-        set_uniforms(self._program, width_px=_WIDTH_PX)
         self._buffer = ctx.buffer(reserve=40)
         self._array = self._new_array()
         self._count = 0
         self._shown: tuple[tuple[DrapedLine, ...], int] = ((), 0)
 
-    def draw(self, lines: tuple[DrapedLine, ...]) -> int:
-        """Draw lines, and return the number of draws."""
+    def draw(self, lines: tuple[DrapedLine, ...], render_scale: float) -> int:
+        """Draw lines as wide as a picture at a render scale asks, and return the number of draws."""
         shown = (lines, self._heightfield.revision)
         if shown != self._shown:
             self._upload(lines)
             self._shown = shown
         if not self._count:
             return 0
+        set_uniforms(self._program, width_px=_WIDTH_PX * render_scale)
         ctx = self._ctx
         ctx.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA

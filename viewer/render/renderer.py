@@ -85,6 +85,7 @@ class Renderer:
         self._hud = HudPass(ctx)
         self._skirt_foot = heightfield.z_min - _SKIRT_SHARE * max(shape) * heightfield.grid.dx
         self._target: RenderTarget | None = None
+        self._picture_size = (1, 1)
         self._unprojection: Unprojection | None = None
 
     def draw(self, target: moderngl.Framebuffer, size: tuple[int, int], inputs: FrameInputs) -> FrameStats:
@@ -103,7 +104,7 @@ class Renderer:
         """
         begun = perf_counter()
         options = inputs.options
-        scene = self._scene_target(size, options.samples)
+        scene = self._scene_target(_scaled(size, options.render_scale), options.samples)
         frame = self._heightfield.frame.exaggerated(options.exaggeration)
         sun = sun_direction(options.light_azimuth_deg, options.light_elevation_deg)
         dirty = self._ground.follow(sun, options.show_imagery, inputs.edits)
@@ -116,18 +117,19 @@ class Renderer:
 
         selecting = perf_counter()
         states, depth_max = (None, 0.0) if slots is None else combined_states(*slots)
-        selection = self._lod.select(inputs, frame, size, states, depth_max)
+        selection = self._lod.select(inputs, frame, scene.size, states, depth_max)
         selected = perf_counter()
 
         near, far = self._clip_planes(inputs.camera, frame, size, selection)
         view = inputs.camera.view_matrix()
         projection = inputs.camera.projection(size[0] / size[1], near, far)
         self._unprojection = Unprojection(
-            np.asarray(np.linalg.inv(projection @ view), dtype=np.float64), size, frame
+            np.asarray(np.linalg.inv(projection @ view), dtype=np.float64), scene.size, frame
         )
-        self._uniforms.write(inputs, frame, projection @ view, size, self._skirt_foot)
+        self._uniforms.write(inputs, frame, projection @ view, scene.size, self._skirt_foot)
         draws = self._draw_scene(scene, inputs, selection, slots, projection, view)
         scene.resolve()
+        self._picture_size = size
         draws += self._present.draw(target, size, scene.colour)
         draws += self._hud.draw(target, size, inputs)
         done = perf_counter()
@@ -160,7 +162,8 @@ class Renderer:
         if self._target is None or self._unprojection is None:
             return None
         width, height = self._target.size
-        column, row = math.floor(x), height - 1 - math.floor(y)
+        column = math.floor((math.floor(x) + 0.5) * width / self._picture_size[0])
+        row = height - 1 - math.floor((math.floor(y) + 0.5) * height / self._picture_size[1])
         if not (0 <= column < width and 0 <= row < height):
             return None
         depth = self._target.depth_at(column, row)
@@ -224,7 +227,7 @@ class Renderer:
             rotation[:3, 3] = 0.0
             draws += self._sky.draw(np.asarray(np.linalg.inv(projection @ rotation), dtype=np.float64))
         if inputs.edits is not None:
-            draws += self._lines.draw(inputs.edits.lines)
+            draws += self._lines.draw(inputs.edits.lines, options.render_scale)
         return draws
 
     def _scene_target(self, size: tuple[int, int], samples: int) -> RenderTarget:
@@ -247,3 +250,7 @@ class Renderer:
         near = min(near, 1e5)
         # The walls of the map reach below the boxes.
         return near, max(1.2 * selection.distance_max, 2.0 * near)
+
+
+def _scaled(size: tuple[int, int], scale: float) -> tuple[int, int]:
+    return (max(1, round(size[0] * scale)), max(1, round(size[1] * scale)))

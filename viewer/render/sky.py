@@ -96,7 +96,7 @@ class SkyPass:
         for face, pixels in enumerate(sky_faces(sun)):
             self.texture.write(face, np.ascontiguousarray(pixels), alignment=1)
         self.texture.build_mipmaps()
-        self.texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        self.texture.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
         self._sun = sun
 
     def draw(self, direction_of_place: npt.NDArray[np.float64]) -> int:

@@ -496,6 +496,23 @@ def test_every_option_changes_the_picture(hilly: Heightfield, make_stage: Callab
     assert (plain != other).any(axis=2).mean() > 0.002
 
 
+@pytest.mark.parametrize("scale", [0.5, 2.0])
+def test_another_render_scale_shows_the_same_scene_and_picks_the_same_places(
+    hilly: Heightfield, make_stage: Callable, scale: float
+) -> None:
+    stage = make_stage(hilly)
+    plain = stage.draw(FrameInputs(VIEWS[4])).astype(int)
+    place = stage.renderer.pick(200.0, 190.0)
+    scaled = stage.draw(FrameInputs(VIEWS[4], options=RenderOptions(render_scale=scale))).astype(int)
+    other = stage.renderer.pick(200.0, 190.0)
+
+    assert scaled.shape == plain.shape
+    assert 0.0 < np.abs(plain - scaled).mean() < 6.0
+    assert place is not None
+    assert other is not None
+    assert math.dist(place, other) < 60.0
+
+
 def test_a_picture_may_change_its_size(
     hilly: Heightfield, make_stage: Callable, ctx: moderngl.Context
 ) -> None:

@@ -35,7 +35,7 @@ void main() {
     float far = distance(world, eye.xyz);
     // Small waves fade with distance and in films too thin to carry them.
     float lively = smoothstep(0.0, 0.4, depth) / (1.0 + far / (60.0 * grid.w));
-    vec2 small = (texture(ripples, world.xz / 47.0).rg + texture(ripples, world.zx / 173.0).rg - 1.0) * 0.22 * lively;
+    vec2 small = (texture(ripples, world.xz / 110.0).rg - 0.5) * 0.34 * lively;
     vec3 normal = normalize(vec3(-(slope * vertical.x + small).x, 1.0, -(slope * vertical.x + small).y));
 
     float facing = clamp(-dot(sight, normal), 0.0, 1.0);
