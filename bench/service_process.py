@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 import time
+import urllib.request
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
@@ -77,6 +78,15 @@ class ServiceProcess:
         self.process.stdin.close()
         self.process.wait(timeout_s)
         return time.perf_counter() - begun
+
+    def status(self) -> dict[str, Any]:
+        """What the service tells of itself."""
+        request = urllib.request.Request(
+            f"{self.http}/v1/status", headers={"Authorization": f"Bearer {self.token}"}
+        )
+        with urllib.request.urlopen(request, timeout=TIMEOUT_S) as answer:
+            found: dict[str, Any] = json.load(answer)
+        return found
 
     def _close(self) -> None:
         try:

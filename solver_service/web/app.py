@@ -71,6 +71,17 @@ def create_app(registry: RunRegistry, gate: Gate) -> FastAPI:
         """Which service this is."""
         return {"server": SERVER_NAME, "version": server_version(), "protocol": PROTOCOL_VERSION}
 
+    @app.get("/v1/status", dependencies=[Depends(authorised)])
+    async def status() -> dict[str, Any]:
+        """How the service is getting on."""
+        return {
+            "connections": len(connections),
+            "runs": len(registry.tree),
+            "workers": len(registry.pool.workers),
+            "devices": registry.pool.devices,
+            "longest_publish_wait_s": registry.reports.longest_publish_wait_s,
+        }
+
     @app.get("/v1/cases", dependencies=[Depends(authorised)])
     def cases() -> list[dict[str, Any]]:
         """The cases on offer."""

@@ -1,0 +1,1 @@
+"""Measurements: `python -m bench NAME [--smoke]` prints one JSON line per figure."""

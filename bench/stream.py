@@ -1,0 +1,131 @@
+"""Replay from the store over a real socket: frames per second, bits per second, gaps; and what publishing
+costs.
+
+The flood is a lake over a third and more of 2113 x 1949 cells that sloshes, so that frames are large and
+differ. The viewer decodes every frame and pays for it with one credit.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+import protocol
+from bench.service_process import ServiceClient, ServiceProcess
+from protocol import BlockLayout
+
+FULL = (1949, 2113)
+SMOKE = (256, 256)
+FRAMES = 40
+SMOKE_FRAMES = 12
+INTERVAL = 2.0
+CREDIT = 4
+
+
+def figures(smoke: bool) -> Iterator[dict[str, object]]:
+    """Replay and publishing figures."""
+    nrows, ncols = SMOKE if smoke else FULL
+    frames = SMOKE_FRAMES if smoke else FRAMES
+    seconds = 1.0 if smoke else 60.0
+    with tempfile.TemporaryDirectory(prefix="fev-bench-") as folder:
+        case = _write_case(Path(folder) / "slosh", nrows, ncols, frames)
+        with ServiceProcess(Path(folder) / "data", cases=[str(case)]) as service:
+            with ServiceClient(service) as client:
+                run = str(client.do(protocol.StartRun, case=str(case))["run"])
+                client.until(_finished(run), timeout_s=600.0)
+            waited_ms = 1e3 * service.status()["longest_publish_wait_s"]
+            yield {
+                "figure": "longest_publish_wait",
+                "value": round(waited_ms, 3),
+                "unit": "ms",
+                "frames": frames,
+            }
+            yield from _replay(service, run, BlockLayout(nrows, ncols), frames, seconds)
+
+
+def _replay(
+    service: ServiceProcess, run: str, layout: BlockLayout, last: int, seconds: float
+) -> Iterator[dict[str, object]]:
+    arrivals, sizes, wet = [], [], []
+    with ServiceClient(service, layout=layout) as client:
+        client.do(protocol.Subscribe, run=run, from_index=0, mode="replay", credit=CREDIT)
+        begun = time.perf_counter()
+        while time.perf_counter() - begun < seconds:
+            frame = client.first(protocol.Frame)
+            arrivals.append(time.perf_counter())
+            sizes.append(len(frame.payload) + len(frame.states))
+            decoded = client.decoded.pop((frame.run, frame.index))
+            wet.append(np.count_nonzero(decoded.q) / decoded.q.size)
+            if frame.index == last:
+                client.do(protocol.Seek, run=run, index=0)
+        wall = arrivals[-1] - begun
+    gaps = np.diff(arrivals)
+    about = {
+        "cells": layout.nrows * layout.ncols,
+        "wet_share": round(float(np.mean(wet)), 3),
+        "frames": len(sizes),
+    }
+    yield {"figure": "replay_rate", "value": round(len(sizes) / wall, 1), "unit": "frames/s", **about}
+    yield {
+        "figure": "replay_bits_at_20_frames_per_s",
+        "value": round(8e-6 * 20.0 * float(np.mean(sizes)), 1),
+        "unit": "Mbit/s",
+        **about,
+    }
+    yield {"figure": "replay_bits", "value": round(8e-6 * sum(sizes) / wall, 1), "unit": "Mbit/s", **about}
+    yield {
+        "figure": "replay_gap_p95",
+        "value": round(1e3 * float(np.percentile(gaps, 95)), 1),
+        "unit": "ms",
+        **about,
+    }
+
+
+def _finished(run: str) -> Callable[[object], bool]:
+    def test(event: object) -> bool:
+        if isinstance(event, protocol.Error | protocol.Notice):
+            raise RuntimeError(str(event))
+        return (
+            isinstance(event, protocol.RunChanged) and event.run.run == run and event.run.status == "finished"
+        )
+
+    return test
+
+
+def _write_case(folder: Path, nrows: int, ncols: int, frames: int) -> Path:
+    folder.mkdir()
+    dx = 10.0
+    y, x = np.mgrid[0:nrows, 0:ncols] * dx
+    valley = 40.0 * np.abs(x / (ncols * dx) - 0.5) * 2.0 + 3.0 * np.sin(x / 310.0) * np.cos(y / 270.0)
+    tilt = 4.0 * (y / (nrows * dx) - 0.5)
+    depth = np.maximum(0.0, 18.0 + tilt - valley)
+    np.savez(folder / "terrain.npz", bed=valley.astype(np.float32), depth=depth.astype(np.float32))
+    (folder / "case.toml").write_text(
+        f"""
+[case]
+name = "slosh"
+title = "A lake that sloshes"
+hypothetical = true
+crs = "local"
+source = "made by the bench"
+licence = "Apache-2.0"
+[terrain]
+dem = "terrain.npz"
+key = "bed"
+cell_size = {dx}
+[roughness]
+manning_n = 0.03
+[initial]
+depth = "terrain.npz"
+depth_key = "depth"
+[run]
+duration = {INTERVAL * frames}
+output_interval = {INTERVAL}
+""",
+        encoding="utf-8",
+    )
+    return folder
