@@ -77,7 +77,7 @@ def _data_home() -> Path | None:
 @contextmanager
 def _find(name: str, need_terrain: bool = True) -> Iterator[CaseFolder]:
     """The folder of a case by name, else by path."""
-    plain = bool(name) and not set(name) & set("/\\\0") and name not in (".", "..")
+    plain = 0 < len(name) <= 100 and not set(name) & set("/\\\0") and name not in (".", "..")
     if plain and (EMBEDDED / name / CASE_FILE).is_file():
         root = EMBEDDED / name
         if name == malpasset.NAME and need_terrain:

@@ -218,14 +218,14 @@ def read_roughness(table: Table, folder: CaseFolder, grid: GridGeometry) -> floa
                 "raster", f"its cell (row {row}, column {col}) holds {values[row, col]:g}; {allowed} is"
             )
     else:
-        values = np.full(grid.shape, table.real("manning_n", allowed, 0.0, MANNING_MAX), np.float32)
-    zones = table.tables("zone")
-    for zone in zones:
+        everywhere = table.real("manning_n", allowed, 0.0, MANNING_MAX)
+        if not table.has("zone"):
+            return everywhere
+        values = np.full(grid.shape, everywhere, np.float32)
+    for zone in table.tables("zone"):
         values[cells_inside(read_area(zone, folder), grid)] = zone.real(
             "manning_n", allowed, 0.0, MANNING_MAX
         )
-    if not zones and not table.has("raster"):
-        return float(values[0, 0])
     return values
 
 

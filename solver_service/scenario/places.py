@@ -91,7 +91,7 @@ def read_demo(table: Table | None, grid: GridGeometry) -> DemoScript | None:
 def gauge_cells(
     gauges: tuple[Gauge, ...], sections: tuple[Section, ...], grid: GridGeometry
 ) -> tuple[tuple[float, float], ...]:
-    """Column and row, in cells, of all places that the solver records: the gauges, then the section points."""
+    """Column and row, in cells, of all places that the solver records: gauges, then section points."""
     places = [(gauge.x, gauge.y) for gauge in gauges]
     for section in sections:
         places += zip(section.x.tolist(), section.y.tolist(), strict=True)

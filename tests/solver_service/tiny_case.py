@@ -1,5 +1,6 @@
 """A case small enough to be solved within a test: a dam across a sloping valley."""
 
+import csv
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +46,7 @@ at = [1055.0, 2125.0]
 
 [[gauge]]
 id = "lower"
-at = [1255.0, 2125.0]
+at = [1155.0, 2125.0]
 
 [[section]]
 id = "dam"
@@ -57,6 +58,12 @@ def valley() -> np.ndarray:
     """Bed [m], row 0 in the south: falls to the east, rises to both sides, near 300 m."""
     cols, rows = np.meshgrid(np.arange(COLS), np.arange(ROWS))
     return (303.0 - 0.05 * cols + 0.02 * (rows - 0.5 * (ROWS - 1)) ** 2).astype(np.float32)
+
+
+def rows_of(table: Path) -> list[dict[str, str]]:
+    """Rows of a CSV file by its header."""
+    with table.open(newline="", encoding="utf-8") as lines:
+        return list(csv.DictReader(lines))
 
 
 def write_bed(folder: Path, bed: np.ndarray | None = None) -> None:

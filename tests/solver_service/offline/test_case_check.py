@@ -1,0 +1,56 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solver_service.errors import DeviceError
+from solver_service.offline import check_case
+from solver_service.scenario import load_case
+from tests.solver_service.tiny_case import CASE, GAUGES, valley, write_case
+
+
+def test_a_sound_case_has_facts_and_no_warnings(tmp_path: Path) -> None:
+    case = load_case(write_case(tmp_path, CASE + GAUGES))
+
+    report = check_case(case, "cpu")
+
+    facts = dict(report.facts)
+    assert report.warnings == []
+    assert facts["coordinates"] == "local, metres"
+    assert facts["cells"] == "24 x 40 = 960 of 10 m"
+    assert facts["open edges"] == "east"
+    assert facts["gauges, sections"] == "2, 1"
+    assert report.figures["cells"] == 960
+    assert report.figures["volume_initial_m3"] == pytest.approx(case.initial_h.sum() * 100.0, rel=1e-6)
+    assert 0.0 < report.figures["run_time_s"] < 600.0
+
+
+def test_odd_things_are_told(tmp_path: Path) -> None:
+    bed = valley()
+    bed[12, 30] -= 9.0
+    bed[12, 15] = np.nan
+    text = CASE.replace('vertical_datum = "the floor"\n', "") + GAUGES
+    text += "\n[[source]]\nat = [1005.0, 2005.0]\ndischarge = 1.0\n"
+
+    report = check_case(load_case(write_case(tmp_path, text, bed)), "cpu")
+
+    said = "\n".join(report.warnings)
+    assert "A single cell lies 8.9 m below" in said
+    assert "vertical_datum does not say" in said
+    assert "[[source]] number 1 touches the edge" in said
+    assert "Gauge 'lower' stands on a cell without data" in said
+    assert dict(report.facts)["cells without data"] == "1 (1 walls)"
+    assert report.figures["pits"] >= 1
+
+
+def test_a_case_without_water_is_odd(tmp_path: Path) -> None:
+    dry = CASE[: CASE.index("[[initial.level]]")] + CASE[CASE.index("[[boundary]]") :]
+
+    report = check_case(load_case(write_case(tmp_path, dry)), "cpu")
+
+    assert any("no water" in warning for warning in report.warnings)
+
+
+def test_an_absent_device_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(DeviceError, match="cuda:17"):
+        check_case(load_case(write_case(tmp_path)), "cuda:17")
