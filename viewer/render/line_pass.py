@@ -9,7 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from viewer.render.frame_inputs import DrapedLine, LineStyle
+from viewer.render.ground_textures import GroundTextures
 from viewer.render.shader_library import build_program, set_uniforms
+from viewer.render.water_textures import WaterSlot, bind_slots
 from viewer.world.heightfield import Heightfield
 
 __all__ = ["LinePass", "drape"]
@@ -25,14 +27,14 @@ _RING_POINTS = 33
 
 
 def drape(heightfield: Heightfield, vertices: tuple[tuple[float, float], ...]) -> npt.NDArray[np.float64]:
-    """Points along a polyline on the ground, at least one a half cell.
+    """Points along a polyline, at least one a half cell.
 
     Args:
         heightfield: the ground.
         vertices: grid coordinates [m].
 
     Returns:
-        x, y, z [m], shape [n, 3].
+        x, y [m], shape [n, 2].
     """
     places = np.asarray(vertices, dtype=np.float64)
     parts = [places[:1]]
@@ -40,8 +42,7 @@ def drape(heightfield: Heightfield, vertices: tuple[tuple[float, float], ...]) -
         pieces = max(1, int(np.ceil(np.hypot(*(end - start)) / (0.5 * heightfield.grid.dx))))
         share = np.arange(1, pieces + 1)[:, None] / pieces
         parts.append(start + share * (end - start))
-    xy = np.concatenate(parts)
-    return np.column_stack([xy, heightfield.sample(xy[:, 0], xy[:, 1])])
+    return np.concatenate(parts)
 
 
 class LinePass:
@@ -52,20 +53,29 @@ class LinePass:
         self._ctx = ctx
         self._heightfield = heightfield
         self._program = build_program(ctx, "line.vert", "line.frag")
-        self._buffer = ctx.buffer(reserve=40)
+        self._buffer = ctx.buffer(reserve=32)
         self._array = self._new_array()
         self._count = 0
-        self._shown: tuple[tuple[DrapedLine, ...], int] = ((), 0)
+        self._shown: tuple[DrapedLine, ...] = ()
 
-    def draw(self, lines: tuple[DrapedLine, ...], render_scale: float) -> int:
-        """Draw lines as wide as a picture at a render scale asks, and return the number of draws."""
-        shown = (lines, self._heightfield.revision)
-        if shown != self._shown:
+    def draw(
+        self,
+        ground: GroundTextures,
+        lines: tuple[DrapedLine, ...],
+        slots: tuple[WaterSlot, WaterSlot] | None,
+        alpha: float,
+        render_scale: float,
+    ) -> int:
+        """Draw lines on the ground, or on the water over it, and return the number of draws."""
+        if lines != self._shown:
             self._upload(lines)
-            self._shown = shown
+            self._shown = lines
         if not self._count:
             return 0
-        set_uniforms(self._program, width_px=_WIDTH_PX * render_scale)
+        ground.height.use(0)
+        if slots is not None:
+            bind_slots(self._program, slots, alpha, unit=1)
+        set_uniforms(self._program, over_water=int(slots is not None), width_px=_WIDTH_PX * render_scale)
         ctx = self._ctx
         ctx.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
@@ -79,7 +89,7 @@ class LinePass:
 
     def _upload(self, lines: tuple[DrapedLine, ...]) -> None:
         pieces = [self._pieces(line) for line in lines]
-        records = np.concatenate(pieces) if pieces else np.zeros((0, 10), dtype="<f4")
+        records = np.concatenate(pieces) if pieces else np.zeros((0, 8), dtype="<f4")
         self._count = len(records)
         if records.nbytes > self._buffer.size:
             self._array.release()
@@ -97,14 +107,14 @@ class LinePass:
         records = []
         frame = self._heightfield.frame
         for path in paths:
-            points = drape(self._heightfield, path) - (frame.x_centre, frame.y_centre, 0.0)
+            points = drape(self._heightfield, path) - (frame.x_centre, frame.y_centre)
             colour = np.broadcast_to(_COLOURS[line.style], (len(points) - 1, 4))
             records.append(np.hstack([points[:-1], points[1:], colour]))
-        return np.concatenate(records).astype("<f4") if records else np.zeros((0, 10), dtype="<f4")
+        return np.concatenate(records).astype("<f4") if records else np.zeros((0, 8), dtype="<f4")
 
     def _new_array(self) -> moderngl.VertexArray:
         return self._ctx.vertex_array(
-            self._program, [(self._buffer, "3f 3f 4f /i", "in_start", "in_end", "in_colour")]
+            self._program, [(self._buffer, "2f 2f 4f /i", "in_start", "in_end", "in_colour")]
         )
 
 

@@ -227,7 +227,8 @@ class Renderer:
             rotation[:3, 3] = 0.0
             draws += self._sky.draw(np.asarray(np.linalg.inv(projection @ rotation), dtype=np.float64))
         if inputs.edits is not None:
-            draws += self._lines.draw(inputs.edits.lines, options.render_scale)
+            alpha = 0.0 if inputs.water is None else inputs.water.alpha
+            draws += self._lines.draw(self._ground, inputs.edits.lines, slots, alpha, options.render_scale)
         return draws
 
     def _scene_target(self, size: tuple[int, int], samples: int) -> RenderTarget:

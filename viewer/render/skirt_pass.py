@@ -9,7 +9,7 @@ from viewer.lod import Selection
 from viewer.lod.block_tiling import BlockTiling
 from viewer.render.ground_textures import GroundTextures
 from viewer.render.shader_library import build_program, set_uniforms
-from viewer.render.water_textures import WaterSlot
+from viewer.render.water_textures import WaterSlot, bind_slots
 
 __all__ = ["SkirtPass"]
 
@@ -24,8 +24,7 @@ class SkirtPass:
         self._ctx = ctx
         self._stride = tiling.stride
         self._program = build_program(ctx, "skirt.vert", "skirt.frag")
-        names = ("height", "bed_first", "bed_second", "depth_first", "depth_second")
-        set_uniforms(self._program, **{name: unit for unit, name in enumerate(names)})
+        self._columns = tiling.block_cols
         rows, cols = np.divmod(np.arange(tiling.block_count), tiling.block_cols)
         borders = (cols == 0, cols == tiling.block_cols - 1, rows == 0, rows == tiling.block_rows - 1)
         parts = []
@@ -49,18 +48,14 @@ class SkirtPass:
         sides = self._sides[selection.visible[self._block]]
         if not sides.size:
             return 0
-        sides["level"] = selection.level[sides["row"].astype(np.int64) * self._columns() + sides["col"]]
+        sides["level"] = selection.level[sides["row"].astype(np.int64) * self._columns + sides["col"]]
         self._buffer.orphan(self._sides.nbytes)
         self._buffer.write(sides)
         self._ctx.enable_only(moderngl.DEPTH_TEST)
         ground.height.use(0)
         if slots is not None:
-            first, second = slots
-            assert first.bed is not None
-            assert second.bed is not None
-            for unit, texture in enumerate((first.bed, second.bed, first.depth, second.depth), start=1):
-                texture.use(unit)
-        set_uniforms(self._program, of_water=int(slots is not None), alpha=alpha)
+            bind_slots(self._program, slots, alpha, unit=1)
+        set_uniforms(self._program, of_water=int(slots is not None))
         self._array.render(moderngl.TRIANGLE_STRIP, vertices=2 * (self._stride + 1), instances=sides.size)
         return 1
 
@@ -68,6 +63,3 @@ class SkirtPass:
         """Give the memory back."""
         for thing in (self._array, self._buffer, self._program):
             thing.release()
-
-    def _columns(self) -> int:
-        return int(self._sides["col"].max()) + 1

@@ -16,17 +16,14 @@ from viewer.render.block_mesh import BlockIndices, BlockInstances
 from viewer.render.frame_inputs import RenderOptions, WaterStyle
 from viewer.render.ground_textures import GroundTextures
 from viewer.render.shader_library import build_program, set_uniforms
-from viewer.render.water_textures import WaterSlot
+from viewer.render.water_textures import WaterSlot, bind_slots
 from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, DEPTH_CLASS_LIMITS
 
 __all__ = ["WaterPass", "ripple_slopes"]
 
-_UNITS = (
-    *("sky", "ripples"),
-    *("bed_first", "bed_second", "depth_first", "depth_second", "slope_first", "slope_second"),
-)
-"""Samplers in the order of their texture units, after those of the ground."""
-_FIRST_UNIT = 4
+_OWN_UNITS = {"sky": 4, "ripples": 5, "slope_first": 6, "slope_second": 7}
+"""Texture units after those of the ground."""
+_WATER_UNIT = 8
 _RIPPLE_SIDE = 256
 _SEED = 2011
 
@@ -55,7 +52,7 @@ class WaterPass:
         """Compile and allocate."""
         self._ctx = ctx
         self._program = build_program(ctx, "water.vert", "water.frag")
-        set_uniforms(self._program, **{name: unit for unit, name in enumerate(_UNITS, start=_FIRST_UNIT)})
+        set_uniforms(self._program, **_OWN_UNITS)
         set_uniforms(
             self._program,
             class_limits=list(DEPTH_CLASS_LIMITS),
@@ -76,20 +73,17 @@ class WaterPass:
         options: RenderOptions,
     ) -> int:
         """Draw the selected blocks, and return the number of draws."""
-        first, second = slots
-        assert first.bed is not None
-        assert second.bed is not None
         ground.bind(self._program)
-        sky.use(_FIRST_UNIT)
-        frames = (first.bed, second.bed, first.depth, second.depth, first.slope, second.slope)
-        for unit, texture in enumerate((self._ripples, *frames), start=_FIRST_UNIT + 1):
-            texture.use(unit)
+        sky.use(_OWN_UNITS["sky"])
+        self._ripples.use(_OWN_UNITS["ripples"])
+        slots[0].slope.use(_OWN_UNITS["slope_first"])
+        slots[1].slope.use(_OWN_UNITS["slope_second"])
+        bind_slots(self._program, slots, alpha, _WATER_UNIT)
         self._ctx.enable_only(moderngl.DEPTH_TEST)
         self._ctx.depth_func = "<="
         self._ctx.wireframe = options.wireframe
         set_uniforms(
             self._program,
-            alpha=alpha,
             snap_edges=int(options.snap_edges),
             depth_classes=int(options.water_style is WaterStyle.DEPTH_CLASSES),
         )

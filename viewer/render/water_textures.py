@@ -18,7 +18,7 @@ from viewer.render.frame_inputs import WaterFrame, WaterPair
 from viewer.render.ground_textures import height_texture, write_rect
 from viewer.render.shader_library import build_program, set_uniforms
 
-__all__ = ["WaterSlot", "WaterTextures", "combined_states"]
+__all__ = ["WaterSlot", "WaterTextures", "bind_slots", "combined_states"]
 
 DRY = 0
 WIRE_BLOCK_SIZE = 33
@@ -33,7 +33,7 @@ class WaterSlot:
         self.slope = ctx.texture(size, 2, dtype="f2")
         for texture in (self.depth, self.slope):
             texture.repeat_x = texture.repeat_y = False
-            texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+            texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
         self.framebuffer = ctx.framebuffer([self.depth, self.slope])
         self.key: Hashable = None
         self.z_b: npt.NDArray[np.float32] | None = None
@@ -45,6 +45,25 @@ class WaterSlot:
         """Give the memory back (the bed belongs to `WaterTextures`)."""
         for thing in (self.framebuffer, self.depth, self.slope):
             thing.release()
+
+
+def bind_slots(program: moderngl.Program, slots: tuple[WaterSlot, WaterSlot], alpha: float, unit: int) -> int:
+    """Bind what `common/water_depth.glsl` asks for from a texture unit on, and return the next free one."""
+    first, second = slots
+    assert first.bed is not None
+    assert second.bed is not None
+    textures = {
+        "bed_first": first.bed,
+        "bed_second": second.bed,
+        "depth_first": first.depth,
+        "depth_second": second.depth,
+    }
+    for name, texture in textures.items():
+        texture.use(unit)
+        set_uniforms(program, **{name: unit})
+        unit += 1
+    set_uniforms(program, alpha=alpha)
+    return unit
 
 
 def combined_states(first: WaterSlot, second: WaterSlot) -> tuple[npt.NDArray[np.uint8], float]:

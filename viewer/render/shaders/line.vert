@@ -1,16 +1,22 @@
 #version 410 core
-// A piece of a draped line as a ribbon of constant width on the screen. One instance is one piece.
+// A piece of a line laid on the ground, or on the water over it, as a ribbon of constant width on the screen.
+// One instance is one piece.
 #include "common/frame.glsl"
-in vec3 in_start;  // east of the centre, north of the centre, elevation [m]
-in vec3 in_end;
+#include "common/water_depth.glsl"
+in vec2 in_start;  // east and north of the centre [m]
+in vec2 in_end;
 in vec4 in_colour;
+uniform sampler2D height;
+uniform int over_water;
 uniform float width_px;
 out vec4 tint;
 out float across;
 
-vec4 projected(vec3 place) {
-    float y = vertical.y + vertical.x * (place.z - vertical.y);
-    return view_projection * vec4(place.x, y, -place.y, 1.0);
+vec4 projected(vec2 place) {
+    vec2 uv = place / (grid.xy * grid.w) + 0.5;
+    float z = textureLod(height, uv, 0.0).r;
+    if (over_water != 0) z += max(water_depth_at(uv, z), 0.0);
+    return view_projection * vec4(place.x, vertical.y + vertical.x * (z - vertical.y), -place.y, 1.0);
 }
 
 void main() {

@@ -1,23 +1,15 @@
 #version 410 core
 // The walls of the map: of earth below the ground, of water below the surface. One instance is one side of a block.
 #include "common/frame.glsl"
+#include "common/water_depth.glsl"
 in uvec2 in_block;
 in uvec2 in_side;            // side (0 west, 1 east, 2 south, 3 north), level of the block
 uniform sampler2D height;
 uniform int of_water;
-uniform sampler2D bed_first;
-uniform sampler2D bed_second;
-uniform sampler2D depth_first;
-uniform sampler2D depth_second;
-uniform float alpha;
 out float elevation;
 out float below;             // depth below the upper edge [m]
 out float clear_air;
 flat out vec3 normal;
-
-float drawn(sampler2D depths, sampler2D beds, ivec2 cell, float ground) {
-    return texelFetch(depths, cell, 0).r - max(ground - texelFetch(beds, cell, 0).r, 0.0);
-}
 
 void main() {
     int stride = int(grid.z);
@@ -29,9 +21,8 @@ void main() {
     float ground = texelFetch(height, cell, 0).r;
     float top = ground, foot = vertical.w;
     if (of_water != 0) {
-        float depth = mix(drawn(depth_first, bed_first, cell, ground), drawn(depth_second, bed_second, cell, ground), alpha);
         foot = ground;
-        top = ground + max(depth, 0.0);
+        top = ground + max(water_depth_of_cell(cell, ground), 0.0);
     }
     elevation = (gl_VertexID & 1) == 0 ? top : foot;
     below = top - elevation;

@@ -1,0 +1,23 @@
+// Depth of the water to draw, blended between two frames; zero or less under dry ground.
+uniform sampler2D bed_first;    // bed under the first frame
+uniform sampler2D bed_second;
+uniform sampler2D depth_first;  // depth continued under dry banks
+uniform sampler2D depth_second;
+uniform float alpha;            // 0 shows the first frame, 1 the second
+
+// Ground that an edit raised takes depth away at an unchanged level; ground that it lowered keeps the depth.
+float left_above(float depth, float bed, float ground) {
+    return depth - max(ground - bed, 0.0);
+}
+
+float water_depth_of_cell(ivec2 cell, float ground) {
+    float first = left_above(texelFetch(depth_first, cell, 0).r, texelFetch(bed_first, cell, 0).r, ground);
+    float second = left_above(texelFetch(depth_second, cell, 0).r, texelFetch(bed_second, cell, 0).r, ground);
+    return mix(first, second, alpha);
+}
+
+float water_depth_at(vec2 uv, float ground) {
+    float first = left_above(textureLod(depth_first, uv, 0.0).r, textureLod(bed_first, uv, 0.0).r, ground);
+    float second = left_above(textureLod(depth_second, uv, 0.0).r, textureLod(bed_second, uv, 0.0).r, ground);
+    return mix(first, second, alpha);
+}
