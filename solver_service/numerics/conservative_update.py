@@ -56,8 +56,9 @@ def update_cell(
     hu = h * u - r * (((normal_e - normal_w) + (tangential_n - tangential_s)) + pull * e_x)
     hv = h * v - r * (((tangential_e - tangential_w) + (normal_n - normal_s)) + pull * e_y)
     h_floor = wp.max(h_new, depth_dry)
-    u_free = hu / h_floor
-    v_free = hv / h_floor
+    inverse = 1.0 / h_floor
+    u_free = hu * inverse
+    v_free = hv * inverse
     speed = wp.sqrt(u_free * u_free + v_free * v_free)
     factor = friction_factor(h_floor, speed, drag, dt)
     moving = h_new > depth_dry

@@ -35,5 +35,6 @@ def friction_factor(h: float, speed: float, drag: float, dt: float) -> float:
 
     `h` is the depth [m] (positive), `drag` g n^2 [m^(1/3)].
     """
-    k = drag * inverse_cube_root(h) / h
+    root = inverse_cube_root(h)
+    k = drag * ((root * root) * (root * root))
     return 2.0 / (1.0 + wp.sqrt(1.0 + 4.0 * dt * k * speed))

@@ -102,7 +102,7 @@ def predict(
     """
     t = wp.where(h > depth_dry, theta, 0.0)
     step = wp.max(wp.max(wp.abs(z_w - z), wp.abs(z_e - z)), wp.max(wp.abs(z_s - z), wp.abs(z_n - z)))
-    gentle = wp.max(wp.min((SLOPE_STEEP - step / dx) * SLOPE_WEIGHT, 1.0), 0.0)
+    gentle = wp.max(wp.min((SLOPE_STEEP * dx - step) * (SLOPE_WEIGHT / dx), 1.0), 0.0)
     t_u = gentle * t
     h_x = limited_slope(h - h_w, h_e - h, t)
     u_x = limited_slope(u - u_w, u_e - u, t_u)
@@ -114,10 +114,9 @@ def predict(
     e_y = limited_slope(surface_step(h_s, h, z_s, z), surface_step(h, h_n, z, z_n), t)
 
     k = hancock * half_dt / dx
-    h_floor = wp.max(h, depth_dry)
-    damping = 1.0 / (
-        1.0 + hancock * half_dt * drag * wp.sqrt(u * u + v * v) * inverse_cube_root(h_floor) / h_floor
-    )
+    root = inverse_cube_root(wp.max(h, depth_dry))
+    decay = drag * ((root * root) * (root * root)) * wp.sqrt(u * u + v * v)
+    damping = 1.0 / (1.0 + hancock * half_dt * decay)
     h_p = wp.max(h - k * ((u * h_x + h * u_x) + (v * h_y + h * v_y)), 0.0)
     u_p = (u - k * ((u * u_x + v * u_y) + GRAVITY * e_x)) * damping
     v_p = (v - k * ((u * v_x + v * v_y) + GRAVITY * e_y)) * damping

