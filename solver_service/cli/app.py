@@ -16,7 +16,6 @@ import typer
 from solver_service.errors import ServiceError
 
 BAD_INPUT = 2
-INTERRUPTED = 130
 
 app = typer.Typer(
     add_completion=False,
@@ -145,9 +144,6 @@ def main() -> None:
     except ServiceError as error:
         print(f"fev-solver: {error}", file=sys.stderr)
         sys.exit(BAD_INPUT)
-    except KeyboardInterrupt:
-        print("fev-solver: stopped.", file=sys.stderr)
-        sys.exit(INTERRUPTED)
     except BrokenPipeError:
         sys.stderr.close()
         sys.exit(1)
