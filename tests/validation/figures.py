@@ -17,7 +17,7 @@ class Figure:
         below: Largest value that passes; None where only reported or bounded from below.
         above: Smallest value that passes.
         yardstick: The same error of the published scheme on the same grid, or a number in print.
-        round_off: The value is round-off, so that only its bound is the same on every machine.
+        instead: What the table shows instead of a value that differs from machine to machine.
     """
 
     case: str
@@ -27,7 +27,7 @@ class Figure:
     below: float | None = None
     above: float | None = None
     yardstick: float | None = None
-    round_off: bool = False
+    instead: str = ""
 
     @property
     def passes(self) -> bool:

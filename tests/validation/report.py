@@ -27,8 +27,9 @@ class Collector:
 
 
 def number(value: float, figure: Figure) -> str:
-    """Three significant digits with the unit."""
-    return f"{value:.3g} {figure.unit}".strip()
+    """Three significant digits, all of a whole number above a thousand, with the unit."""
+    text = f"{value:.0f}" if abs(value) >= 1000.0 else f"{value:.3g}"
+    return f"{text} {figure.unit}".strip()
 
 
 def row(figure: Figure) -> str:
@@ -38,7 +39,7 @@ def row(figure: Figure) -> str:
         for sign, bound in ((">=", figure.above), ("<=", figure.below))
         if bound is not None
     ]
-    measured = f"round-off, {allowed[-1]}" if figure.round_off else number(figure.value, figure)
+    measured = figure.instead or number(figure.value, figure)
     yardstick = "" if figure.yardstick is None else number(figure.yardstick, figure)
     return f"| {figure.quantity} | {measured} | {' and '.join(allowed) or 'reported'} | {yardstick} |"
 
@@ -79,7 +80,7 @@ def main(arguments: list[str]) -> int:
     page = PAGE.read_text(encoding="utf-8")
     before, rest = page.split(BEGIN)
     old, after = rest.split(END)
-    found = parse(old) | sections(collector.figures)
+    found = dict(sorted((parse(old) | sections(collector.figures)).items()))
     PAGE.write_text(f"{before}{BEGIN}\n\n{render(found)}\n\n{END}{after}", encoding="utf-8")
     print(f"{PAGE}: {len(collector.figures)} figures of {len(sections(collector.figures))} cases")
     return 0

@@ -46,14 +46,14 @@ def test_long_run_with_wetting_and_drying_keeps_its_volume(figure):
         "volume error, counted from the depths",
         abs(stored(solver) / before - 1.0),
         below=1e-6,
-        round_off=True,
+        instead="round-off",
     )
     figure(
         LONG,
         "volume error of the solver's budget",
         abs(solver.budget().error_relative),
         below=1e-6,
-        round_off=True,
+        instead="round-off",
     )
     assert solver.depth().min() >= 0.0
 
@@ -72,11 +72,11 @@ def test_bed_replaced_under_water_books_exactly_what_it_cuts(figure):
         "water cut by an edit, booked against counted",
         abs((before - stored(solver)) / cut - 1.0),
         below=1e-5,
-        round_off=True,
+        instead="round-off",
     )
     solver.advance_to(500.0)
     kept = abs((stored(solver) + cut) / before - 1.0)
-    figure(LONG, "volume error after an edit", kept, below=1e-6, round_off=True)
+    figure(LONG, "volume error after an edit", kept, below=1e-6, instead="round-off")
     assert abs(solver.budget().error_relative) < 1e-6
 
 
@@ -107,5 +107,5 @@ def test_source_delivers_the_volume_of_its_hydrograph(figure):
         quantum = rows.size * GRID.dx**2 * 2.0**-16
         assert -1e-6 * exact < kept_back < quantum + 1e-6 * exact
         off = abs(solver.budget().error_relative)
-        figure(INFLOW, f"volume error at {until:.0f} s", off, below=1e-6, round_off=True)
-    figure(INFLOW, "volume short of the hydrograph's", kept_back / exact, below=1e-6, round_off=True)
+        figure(INFLOW, f"volume error at {until:.0f} s", off, below=1e-6, instead="round-off")
+    figure(INFLOW, "volume short of the hydrograph's", kept_back / exact, below=1e-6, instead="round-off")

@@ -11,6 +11,7 @@ from tests.validation.solutions import (
     Stoker,
     ThackerPlanar,
     ThackerRadial,
+    WallReflection,
 )
 
 PLANAR = ThackerPlanar(a=1000.0, h0=10.0, sigma=400.0)
@@ -116,6 +117,13 @@ def test_stoker_bore_keeps_mass_and_momentum():
     h, u, bore = dam.plateau
     assert (h - 1.0) * bore == pytest.approx(h * u, rel=1e-12)
     assert h * u * bore == pytest.approx(h * u * u + 0.5 * 9.81 * (h * h - 1.0), rel=1e-10)
+
+
+def test_reflected_bore_keeps_mass_and_momentum():
+    wall = WallReflection(depth=2.0, speed=5.0)
+    h2, back = wall.reflected
+    assert (h2 - 2.0) * back == pytest.approx(2.0 * 5.0, rel=1e-12)
+    assert 2.0 * 5.0 * (5.0 + back) == pytest.approx(0.5 * 9.81 * (h2 * h2 - 4.0), rel=1e-10)
 
 
 def test_stoker_on_a_vanishing_film_becomes_ritter_behind_the_bore():

@@ -13,11 +13,11 @@ BOWL = ThackerPlanar(a=1000.0, h0=10.0, sigma=500.0)
 GRID = square(80, 4000.0)
 TIME = 2.25 * BOWL.period
 BOUNDS = {
-    "L1 of h": 0.0235,
-    "L2 of h": 0.069,
-    "Linf of h": 0.72,
-    "L1 of the unit discharge": 0.365,
-    "L1 of the velocity": 0.31,
+    "L1 of h": 0.024,
+    "L2 of h": 0.071,
+    "Linf of h": 0.75,
+    "L1 of the unit discharge": 0.38,
+    "L1 of the velocity": 0.315,
 }
 
 

@@ -11,5 +11,14 @@ from tests.validation.solutions.stationary_vortex import StationaryVortex
 from tests.validation.solutions.stoker import Stoker
 from tests.validation.solutions.thacker_planar import ThackerPlanar
 from tests.validation.solutions.thacker_radial import ThackerRadial
+from tests.validation.solutions.wall_reflection import WallReflection
 
-__all__ = ["Ritter", "SimpleWave", "StationaryVortex", "Stoker", "ThackerPlanar", "ThackerRadial"]
+__all__ = [
+    "Ritter",
+    "SimpleWave",
+    "StationaryVortex",
+    "Stoker",
+    "ThackerPlanar",
+    "ThackerRadial",
+    "WallReflection",
+]
