@@ -45,6 +45,7 @@ __all__ = [
     "SetSpeed",
     "StartRun",
     "StopRun",
+    "TogglePlay",
     "TopView",
     "Undo",
     "Zoom",
@@ -64,6 +65,11 @@ class Play:
 @dataclass(frozen=True)
 class Pause:
     """Hold the playback clock; the run goes on computing."""
+
+
+@dataclass(frozen=True)
+class TogglePlay:
+    """Play when the playback clock is held, hold it when it runs."""
 
 
 @dataclass(frozen=True)
@@ -284,6 +290,7 @@ class SavePicture:
 Command = (
     Play
     | Pause
+    | TogglePlay
     | Seek
     | SetSpeed
     | FollowLive

@@ -39,6 +39,7 @@ from viewer.commands import (
     SetSpeed,
     StartRun,
     StopRun,
+    TogglePlay,
     Undo,
 )
 from viewer.errors import ViewerError
@@ -64,6 +65,7 @@ WITHOUT_PICTURE = (
     SetSpeed,
     StartRun,
     StopRun,
+    TogglePlay,
     Undo,
 )
 """Commands that change no picture by themselves; what they bring about does."""
@@ -144,6 +146,8 @@ class ViewerApp:
                 self.clock.play()
             case Pause():
                 self.clock.pause()
+            case TogglePlay():
+                self.clock.pause() if self.clock.is_playing else self.clock.play()
             case Seek(time):
                 if not math.isfinite(time):
                     raise CommandError(f"Seek.time = {time!r} is not allowed; it must be finite")

@@ -7,7 +7,17 @@ from collections.abc import Callable
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QAction, QActionGroup, QCloseEvent, QKeySequence
-from PySide6.QtWidgets import QDockWidget, QFileDialog, QMainWindow, QMenu, QMessageBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QDockWidget,
+    QFileDialog,
+    QFrame,
+    QMainWindow,
+    QMenu,
+    QMessageBox,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
 
 from viewer.commands import (
     BeginEdit,
@@ -15,11 +25,11 @@ from viewer.commands import (
     Command,
     FollowLive,
     Pause,
-    Play,
     ResetView,
     SavePicture,
     Seek,
     SetOption,
+    TogglePlay,
     TopView,
 )
 from viewer.gui.conductor import Conductor, Painter
@@ -80,7 +90,7 @@ class MainWindow(QMainWindow):
             self._dock("Depth at a point", self.depth_plot, Qt.DockWidgetArea.RightDockWidgetArea),
         ]
         self.resizeDocks(self.docks, [DOCK_WIDTH] * len(self.docks), Qt.Orientation.Horizontal)
-        self.resizeDocks(self.docks, [350, 340, 190], Qt.Orientation.Vertical)
+        self.resizeDocks(self.docks, [310, 330, 240], Qt.Orientation.Vertical)
         self._make_menus()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.tick)
@@ -124,7 +134,13 @@ class MainWindow(QMainWindow):
     def _dock(self, title: str, panel: QWidget, area: Qt.DockWidgetArea) -> QDockWidget:
         dock = QDockWidget(title, self)
         dock.setObjectName(title)
-        dock.setWidget(panel)
+        scroll = QScrollArea()
+        scroll.setWidget(panel)
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        scroll.setMinimumWidth(panel.minimumSizeHint().width())
+        dock.setWidget(scroll)
         self.addDockWidget(area, dock)
         return dock
 
@@ -133,7 +149,7 @@ class MainWindow(QMainWindow):
         self._action(file_menu, "Save picture ...", "Ctrl+S", self._save_picture)
         self._action(file_menu, "Quit", "Ctrl+Q", self.close)
         playback = self.menuBar().addMenu("&Playback")
-        self._action(playback, "Play or pause", "Space", self._toggle_playback)
+        self._action(playback, "Play or pause", "Space", lambda: self._dispatch(TogglePlay()))
         self._action(playback, "Follow live", "L", lambda: self._dispatch(FollowLive(True)))
         self._action(playback, "Next frame", ".", lambda: self._step(1))
         self._action(playback, "Previous frame", ",", lambda: self._step(-1))
@@ -198,9 +214,6 @@ class MainWindow(QMainWindow):
             action.setChecked(value == initial)
             action.triggered.connect(lambda _on, value=value: self._dispatch(SetOption(option, value)))
             group.addAction(action)
-
-    def _toggle_playback(self) -> None:
-        self._dispatch(Pause() if self._conductor.status().is_playing else Play())
 
     def _toggle_drawing(self) -> None:
         self._dispatch(CancelEdit() if self._conductor.status().is_drawing else BeginEdit())

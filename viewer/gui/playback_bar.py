@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QPushButton, QWidget
 
-from viewer.commands import FollowLive, Pause, Play, Seek, SetSpeed
+from viewer.commands import FollowLive, Seek, SetSpeed, TogglePlay
 from viewer.gui.conductor import Dispatch
 from viewer.gui.time_slider import TimeSlider
 from viewer.view_status import ViewStatus, time_text
@@ -20,13 +20,11 @@ class PlaybackBar(QWidget):
 
     def __init__(self, dispatch: Dispatch, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._dispatch = dispatch
-        self._is_playing = False
         self.play = QPushButton("Play")
         self.play.setAccessibleName("Play or pause")
         self.play.setToolTip("Play or pause (Space)")
         self.play.setFixedWidth(84)
-        self.play.clicked.connect(self._toggle)
+        self.play.clicked.connect(lambda: dispatch(TogglePlay()))
         self.slider = TimeSlider()
         self.slider.time_chosen.connect(lambda time: dispatch(Seek(time)))
         self.clock = QLabel("00:00:00")
@@ -57,7 +55,6 @@ class PlaybackBar(QWidget):
 
     def show_status(self, status: ViewStatus) -> None:
         """Show where playback stands."""
-        self._is_playing = status.is_playing
         self.setEnabled(status.shown_run is not None)
         self.play.setText("Pause" if status.is_playing else "Play")
         self.clock.setText(time_text(status.time))
@@ -69,6 +66,3 @@ class PlaybackBar(QWidget):
             self.speed.addItem(f"{status.playback_speed:g} x", status.playback_speed)
             row = self.speed.count() - 1
         self.speed.setCurrentIndex(row)
-
-    def _toggle(self) -> None:
-        self._dispatch(Pause() if self._is_playing else Play())
