@@ -26,7 +26,9 @@ class Flight:
         assert self.app.shown is not None
         return self.app.shown
 
-    def until(self, condition: Callable[[], bool], timeout_s: float = 10.0, size: tuple[int, int] = (64, 36)) -> None:
+    def until(
+        self, condition: Callable[[], bool], timeout_s: float = 10.0, size: tuple[int, int] = (64, 36)
+    ) -> None:
         """Let the viewer go on, with a picture now and then, until a condition holds."""
         end = time.monotonic() + timeout_s
         while not condition():

@@ -1,0 +1,75 @@
+import numpy as np
+import pytest
+
+import protocol
+from tests.viewer.app.test_run_book import edit, info
+from tests.viewer.tiny_service import valley
+from viewer.app.shown_run import ShownRun
+from viewer.net import FrameLoader
+
+
+def branch() -> protocol.RunInfo:
+    import msgspec
+
+    lineage = tuple(protocol.LineageEntry(run, at) for run, at in (("a", 0), ("b", 4), ("c", 9)))
+    return msgspec.structs.replace(info("c", parent="b", frames=12), lineage=lineage)
+
+
+@pytest.fixture
+def loader() -> FrameLoader:
+    return FrameLoader()
+
+
+def test_a_frame_index_belongs_to_the_youngest_run_that_began_by_then(loader: FrameLoader) -> None:
+    shown = ShownRun(branch(), valley(), loader)
+
+    assert [shown.frame_key(index)[0] for index in (0, 3, 4, 8, 9, 30)] == ["a", "a", "b", "b", "c", "c"]
+    assert (shown.root, shown.branch_index) == ("a", 9)
+    loader.close()
+
+
+def test_only_frames_of_the_lineage_count(loader: FrameLoader) -> None:
+    shown = ShownRun(branch(), valley(), loader)
+
+    assert shown.note_frame(("b", 5))
+    assert not shown.note_frame(("a", 5))
+    assert not shown.note_frame(("x", 5))
+    assert shown.timeline.indices == (5,)
+    assert shown.next_missing(5) == 6
+    shown.discard_frames("a", [5])
+    assert shown.timeline.indices == (5,)
+    shown.discard_frames("b", [5])
+    assert shown.timeline.indices == ()
+    loader.close()
+
+
+def test_the_ground_follows_the_edits(loader: FrameLoader) -> None:
+    shown = ShownRun(branch(), valley(), loader)
+    assert not shown.refresh_ground()
+    shown.document.mirror(1, [edit("one")], True, False)
+
+    assert shown.refresh_ground()
+    assert shown.heightfield.z_b.max() >= valley().max()
+    assert (shown.heightfield.z_b != valley()).any()
+    assert not shown.refresh_ground()
+    loader.close()
+
+
+def test_a_branch_goes_on_with_the_ground_of_its_parent_and_corrects_it(loader: FrameLoader) -> None:
+    parent = ShownRun(info("a"), valley(), loader)
+    parent.document.mirror(1, [edit("one")], True, False)
+    parent.refresh_ground()
+    child = ShownRun(branch(), valley(), loader, parent.heightfield)
+    child.refresh_ground()
+
+    assert child.heightfield is parent.heightfield
+    np.testing.assert_array_equal(child.heightfield.z_b, valley())
+    assert child.overlay_revision() != parent.overlay_revision()
+    loader.close()
+
+
+def test_what_is_computed_counts_even_before_it_has_come(loader: FrameLoader) -> None:
+    shown = ShownRun(branch(), valley(), loader)
+
+    assert shown.computed_until == 110.0
+    loader.close()
