@@ -198,12 +198,12 @@ def test_a_failed_installation_leaves_nothing_behind(
 def test_without_a_network_the_reason_is_named(fev: ModuleType) -> None:
     fev.LOG.parent.mkdir()
     fev.LOG.write_text(
-        "WARNING: Retrying (Retry(total=0)) after connection broken by 'NewConnectionError(...)': /simple/numpy/\n"
+        "WARNING: Retrying (Retry(total=0)) after connection broken by 'SSLError(...)': /simple/numpy/\n"
         "ERROR: Could not find a version that satisfies the requirement numpy==2.4.6 (from versions: none)\n"
         "ERROR: No matching distribution found for numpy==2.4.6\n"
     )
 
-    assert fev.last_words() == "the package index cannot be reached"
+    assert fev.last_words() == "the package index cannot be reached: SSLError"
 
 
 def test_an_installation_that_was_killed_is_begun_anew(fev: ModuleType) -> None:
