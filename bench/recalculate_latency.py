@@ -92,9 +92,11 @@ def _same_scale(frame: DecodedFrame, like: DecodedFrame) -> np.ndarray:
 
 
 def _levee_in_the_water(name: str, frame: DecodedFrame, grid: GridGeometry) -> EditLine:
-    """A levee of 60 cells across the middle of what was wetted last."""
+    """A levee of 60 cells in the row that has half of the water to its south."""
     rows, cols = np.nonzero(frame.q)
-    row, col = int(np.median(rows)), int(np.median(cols[rows == int(np.median(rows))]))
+    row = int(rows[rows.size // 2])
+    in_row = cols[rows == row]
+    col = int(in_row[in_row.size // 2])
     ends = [grid.center(row, max(col - 30, 1)), grid.center(row, min(col + 30, grid.ncols - 2))]
     return EditLine(
         id=name,

@@ -1,5 +1,4 @@
-"""Replay from the store over a real socket: frames per second, bits per second, gaps; and what publishing
-costs.
+"""Replay from the store over a real socket: rate, bits, gaps; and how long publishing a frame waits.
 
 The flood is a lake over a third and more of 2113 x 1949 cells that sloshes, so that frames are large and
 differ. The viewer decodes every frame and pays for it with one credit.
@@ -102,7 +101,7 @@ def _write_case(folder: Path, nrows: int, ncols: int, frames: int) -> Path:
     y, x = np.mgrid[0:nrows, 0:ncols] * dx
     valley = 40.0 * np.abs(x / (ncols * dx) - 0.5) * 2.0 + 3.0 * np.sin(x / 310.0) * np.cos(y / 270.0)
     tilt = 4.0 * (y / (nrows * dx) - 0.5)
-    depth = np.maximum(0.0, 18.0 + tilt - valley)
+    depth = np.maximum(0.0, 15.2 + tilt - valley)
     np.savez(folder / "terrain.npz", bed=valley.astype(np.float32), depth=depth.astype(np.float32))
     (folder / "case.toml").write_text(
         f"""
