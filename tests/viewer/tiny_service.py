@@ -62,11 +62,13 @@ class TinyService:
     Attributes:
         url: its address.
         computed: number of frames that are computed; tests raise it.
+        is_streaming: whether frames are sent; tests hold them back.
         hellos: every hello that came, so that tests see what a viewer said when it came back.
     """
 
     def __init__(self, computed: int = FRAMES, port: int = 0) -> None:
         self.computed = computed
+        self.is_streaming = True
         self.hellos: list[protocol.Hello] = []
         self.authorizations: list[str | None] = []
         self.runs: dict[str, TinyRun] = {}
@@ -154,7 +156,7 @@ class TinyService:
 
     def _stream(self, connection: ServerConnection, session: protocol.ServerSession) -> None:
         subscription = session.subscription
-        if subscription is None or not session.can_send_frame:
+        if subscription is None or not session.can_send_frame or not self.is_streaming:
             return
         index = subscription.from_index
         if index >= self.computed:

@@ -1,3 +1,4 @@
+import msgspec
 import numpy as np
 import pytest
 
@@ -9,8 +10,6 @@ from viewer.net import FrameLoader
 
 
 def branch() -> protocol.RunInfo:
-    import msgspec
-
     lineage = tuple(protocol.LineageEntry(run, at) for run, at in (("a", 0), ("b", 4), ("c", 9)))
     return msgspec.structs.replace(info("c", parent="b", frames=12), lineage=lineage)
 

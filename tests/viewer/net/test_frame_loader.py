@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -76,8 +77,6 @@ def test_a_wanted_frame_is_decoded_as_soon_as_its_key_comes(
 
 
 def test_a_damaged_frame_is_told_and_others_go_on(loader: FrameLoader, frames: list[protocol.Frame]) -> None:
-    import msgspec
-
     loader.store(msgspec.structs.replace(frames[0], checksum=frames[0].checksum ^ 1))
     loader.want([("run", 0), ("run", 8)])
     wait_for(lambda: loader.broken(("run", 0)) is not None)
