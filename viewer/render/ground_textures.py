@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import moderngl
 import numpy as np
 import numpy.typing as npt
@@ -19,8 +21,10 @@ _OUTSIDE_SHARE = 0.02
 _SAMPLERS = ("height", "ground_colour", "edit_mask", "detail")
 _DETAIL_SIDE = 256
 _DETAIL_SEED = 33
-_LIGHT_REACH = 200
-"""Cells around a change whose shade or openness may change with it."""
+_OPENNESS_REACH = 28
+"""Cells around a change whose openness may change with it (the largest radius in `bake_ground.frag`)."""
+_SHADOW_REACH_MAX = 200
+"""Cells that a shadow may be long, at most (the march in `bake_ground.frag`)."""
 
 
 def height_texture(ctx: moderngl.Context, z: npt.NDArray[np.float32]) -> moderngl.Texture:
@@ -120,8 +124,9 @@ class GroundTextures:
     def _bake(self, sun: tuple[float, float, float], show_imagery: bool, rect: Rect) -> None:
         nrows, ncols = self._heightfield.z_b.shape
         width, height = self._baked_size
-        row0, col0 = max(0, rect[0] - _LIGHT_REACH), max(0, rect[1] - _LIGHT_REACH)
-        row1, col1 = min(nrows, rect[2] + _LIGHT_REACH), min(ncols, rect[3] + _LIGHT_REACH)
+        reach = self._light_reach(sun)
+        row0, col0 = max(0, rect[0] - reach), max(0, rect[1] - reach)
+        row1, col1 = min(nrows, rect[2] + reach), min(ncols, rect[3] + reach)
         x0, x1 = col0 * width // ncols, -(-col1 * width // ncols)
         y0, y1 = row0 * height // nrows, -(-row1 * height // nrows)
         has_imagery = show_imagery and self._imagery is not None
@@ -146,6 +151,13 @@ class GroundTextures:
         self._array.render(moderngl.TRIANGLES, vertices=3)
         self.colour.build_mipmaps()
         self.colour.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+
+    def _light_reach(self, sun: tuple[float, float, float]) -> int:
+        """Cells around a change whose light may change with it: as far as the highest hill throws shadow."""
+        field = self._heightfield
+        slope = max(sun[1], 1e-3) / max(math.hypot(sun[0], sun[2]), 1e-3)
+        shadow = 1.2 * (field.z_max - field.z_min) / (slope * field.grid.dx)
+        return _OPENNESS_REACH + math.ceil(min(shadow, _SHADOW_REACH_MAX))
 
     def _follow_edits(self, edits: EditOverlay | None) -> None:
         wanted = None if edits is None else edits.revision

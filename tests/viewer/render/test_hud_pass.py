@@ -1,3 +1,4 @@
+import dataclasses
 from collections.abc import Callable
 
 import numpy as np
@@ -40,6 +41,15 @@ def test_the_hypothetical_mark_stands_in_the_middle_of_the_upper_border(stage) -
     assert not where[60:].any()
     amber = stage.draw(FrameInputs(CAMERA, hud=HudText(is_hypothetical=True)))[where].mean(axis=0)
     assert amber[0] > 2.0 * amber[2]
+
+
+def test_a_long_title_pushes_the_mark_aside(stage) -> None:
+    hud = HudText(title="A title that reaches far into the picture", legend=False, scale_and_north=False)
+    title = changed(stage, hud)
+    both = changed(stage, dataclasses.replace(hud, is_hypothetical=True))
+
+    assert np.array_equal(both & title, title)
+    assert np.flatnonzero((both & ~title).any(axis=0)).min() > np.flatnonzero(title.any(axis=0)).max()
 
 
 def test_a_notice_pushes_the_mark_down(stage) -> None:
