@@ -130,6 +130,6 @@ def _try_solver(case: Case, device: str, report: CaseReport) -> None:
     estimate = wall * case.duration / simulated if simulated > 0.0 else float("inf")
     report.facts += [
         ("memory of the solver", f"about {memory / 2**20:.0f} MiB on {device}"),
-        ("time to run", f"about {estimate:.0f} s, judged by the first {simulated:.1f} s of the flood"),
+        ("time to run", f"about {estimate:.3g} s, judged by the first {simulated:.1f} s of the flood"),
     ]
     report.figures.update(memory_bytes=memory, run_time_s=estimate, device=device)

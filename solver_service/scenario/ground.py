@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -21,6 +22,7 @@ from solver_service.terrain import (
     centre_of,
     check_metres,
     check_ring,
+    crop,
     is_geographic,
     make_terrain,
     read_dem,
@@ -99,7 +101,7 @@ def read_ground(keys: GroundKeys, folder: CaseFolder) -> Terrain:
         bounds=None if table.has("reproject") else keys.bounds,
     )
     raster, crs = _projected(raster, keys)
-    nodata_value = table.number_or_none("nodata_value", "a finite number")
+    nodata_value = table.number_or_none("nodata_value", "a number within float32", -3e38, 3e38)
     if nodata_value is not None:
         values = raster.values.copy()
         values[values == values.dtype.type(nodata_value)] = np.nan
@@ -133,8 +135,6 @@ def _projected(raster: Raster, keys: GroundKeys) -> tuple[Raster, str]:
             raise table.wrong("reproject", "it is allowed only where the file names the system it is in")
         raster = reproject(raster, target, keys.cell_size, f"{file}: [terrain] reproject")
         if keys.bounds:
-            from solver_service.terrain import crop
-
             raster = crop(raster, keys.bounds, table.text("dem"))
         return raster, target
     if raster.crs is not None:
@@ -208,9 +208,10 @@ def read_roughness(table: Table, folder: CaseFolder, grid: GridGeometry) -> floa
         CaseError: nothing is given, or a value is out of range.
     """
     allowed = f"a Manning roughness from 0 to {MANNING_MAX:g} s m^(-1/3)"
+    key, row0 = table.text("key", "manning_n"), table.choice("row0", ("south", "north"), "south")
     if table.has("raster"):
         path = folder.find(table.text("raster"), f"{table.file}: [roughness] raster")
-        values = read_on_grid(path, table, grid, table.text("key", "manning_n"), "nearest")
+        values = read_on_grid(path, table, grid, key, row0, "nearest")
         bad = ~((values >= 0.0) & (values <= MANNING_MAX))
         if bad.any():
             row, col = np.argwhere(bad)[0].tolist()
@@ -230,19 +231,17 @@ def read_roughness(table: Table, folder: CaseFolder, grid: GridGeometry) -> floa
 
 
 def read_on_grid(
-    path: object, table: Table, grid: GridGeometry, key: str, kind: Literal["nearest", "linear"]
+    path: Path, table: Table, grid: GridGeometry, key: str, row0: str, kind: Literal["nearest", "linear"]
 ) -> NDArray[np.float32]:
     """A raster file of a case, on the cells of its terrain; NaN where it says nothing.
 
     Raises:
         TerrainError: the file is not valid.
     """
-    from pathlib import Path
-
     raster = read_dem(
-        Path(str(path)),
+        path,
         key=key,
-        row0=table.choice("row0", ("south", "north"), "south"),
+        row0=row0,
         cell_size=grid.dx,
         origin=(grid.x0, grid.y0),
     )

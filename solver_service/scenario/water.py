@@ -31,11 +31,10 @@ def read_initial(table: Table, folder: CaseFolder, terrain: Terrain) -> NDArray[
     """
     grid = terrain.grid
     h = np.zeros(grid.shape, np.float32)
+    key, row0 = table.text("depth_key", "depth"), table.choice("row0", ("south", "north"), "south")
     if table.has("depth"):
         path = folder.find(table.text("depth"), f"{table.file}: [initial] depth")
-        h = np.nan_to_num(
-            read_on_grid(path, table, grid, table.text("depth_key", "depth"), "linear"), nan=0.0
-        )
+        h = np.nan_to_num(read_on_grid(path, table, grid, key, row0, "linear"), nan=0.0)
         if (h < 0.0).any():
             row, col = np.argwhere(h < 0.0)[0].tolist()
             raise CaseError(
