@@ -1,10 +1,10 @@
 """What holds for every tracked file: short modules, one encoding, no traces of one machine."""
 
 import re
-import subprocess
 from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+from tests.repo.tracked import REPOSITORY, tracked_names
+
 MAX_LINES = 400
 MAX_BYTES = 2_000_000
 TEXT = {".py", ".md", ".toml", ".yaml", ".yml", ".glsl", ".vert", ".frag", ".lock", ".Dockerfile", ""}
@@ -12,14 +12,12 @@ TEXT = {".py", ".md", ".toml", ".yaml", ".yml", ".glsl", ".vert", ".frag", ".loc
 
 def tracked_files() -> list[Path]:
     """Files that git knows; without git (a source archive) all files outside hidden and built folders."""
-    command = ["git", "-C", str(REPOSITORY), "-c", "safe.directory=*", "ls-files", "-z"]
-    try:
-        listing = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
-    except (OSError, subprocess.CalledProcessError):
-        built = {".git", ".venv", ".cache", "build", "dist", "out", "site"}
-        every = (path for path in REPOSITORY.rglob("*") if path.is_file())
-        return [path for path in every if not built & set(path.relative_to(REPOSITORY).parts)]
-    return [path for name in listing.split("\0") if name and (path := REPOSITORY / name).is_file()]
+    names = tracked_names()
+    if names is not None:
+        return [REPOSITORY / name for name in names]
+    built = {".git", ".venv", ".cache", "build", "dist", "out", "site", "__pycache__"}
+    every = (path for path in REPOSITORY.rglob("*") if path.is_file())
+    return [path for path in every if not built & set(path.relative_to(REPOSITORY).parts)]
 
 
 FILES = tracked_files()
