@@ -1,6 +1,6 @@
 """New state of a cell from its face fluxes, and the largest values seen.
 
-    h'  = h - dt/dx (F_e - F_w + G_n - G_s)
+    h'  = h - dt/dx (F_e - F_w + G_n - G_s)                                (the faces give depths, dt/dx F)
     hu' = hu - dt/dx (F_e - F_w + G_n - G_s + g h (eta_e - eta_w))           (hv' alike), then friction
 
 The momentum fluxes are relative to the cell's own pressure (see `riemann`), so what remains of pressure and
@@ -51,7 +51,7 @@ def update_cell(
     `e_x`, `e_y` are half the differences of eta inside the cell [m]; `drag` is g n^2 [m^(1/3)].
     """
     r = dt / dx
-    h_new = h - r * ((mass_e - mass_w) + (mass_n - mass_s))
+    h_new = h - ((mass_e - mass_w) + (mass_n - mass_s))
     pull = 2.0 * GRAVITY * h_p
     hu = h * u - r * (((normal_e - normal_w) + (tangential_n - tangential_s)) + pull * e_x)
     hv = h * v - r * (((tangential_e - tangential_w) + (normal_n - normal_s)) + pull * e_y)

@@ -19,6 +19,11 @@ that runs into it, h u (u + s) with s the speed of the reflected wave, is added.
 step keeps its momentum: held back at every emergent step, the shore of Thacker's circling plane triples its
 error.
 
+Water is moved in whole floats: the depth dt/dx |F| that a face moves is rounded once, to the grid of floats
+at twice the larger depth, so that what one cell gives and the other gets add to their depths without
+rounding. Else a steady river, which rounds the same way in every step, loses 6e-6 of its water in 4500
+steps; so it keeps it to 1e-9.
+
 Each cell takes the normal momentum flux relative to the pressure g h*^2 / 2 of its own side, plus the pull
 g h min(z_f - z, 0) of a step. Together with g h (eta_e - eta_w) inside the cell this is the full balance of
 pressure and bed slope (see `conservative_update`), and every term is exactly zero in a lake at rest: h*_l
@@ -57,12 +62,14 @@ def face_flux(
     c_r_cell: float,
     share_r: float,
     z_step: float,
+    dt_dx: float,
     contact: float,
 ) -> wp.vec4:
-    """Flux of mass, normal momentum for the left and the right cell, tangential momentum.
+    """Depth moved to the right [m], normal momentum for the left and the right cell, tangential one.
 
     Arguments are cell values at half time with half slopes along the face normal (u normal, v tangential);
-    `z_step` is z_b of the right cell less that of the left; `contact` is 1 for HLLC and 0 for HLL.
+    `z_step` is z_b of the right cell less that of the left; `dt_dx` is in s/m; `contact` is 1 for HLLC and
+    0 for HLL.
     """
     d_l = h_l + h_l_slope
     d_r = h_r - h_r_slope
@@ -129,4 +136,7 @@ def face_flux(
     )
     normal_l = (normal + 0.5 * dp) + pull_l
     normal_r = (normal - 0.5 * dp) + pull_r
-    return wp.vec4(mass, normal_l, normal_r, tangential)
+    # Rounds to a multiple of the last place of 2 max(h_l, h_r); mirrored faces round alike.
+    anchor = 2.0 * wp.max(h_l, h_r)
+    moved = (dt_dx * wp.abs(mass) + anchor) - anchor
+    return wp.vec4(wp.where(mass < 0.0, -moved, moved), normal_l, normal_r, tangential)

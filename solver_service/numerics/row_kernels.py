@@ -79,13 +79,13 @@ _SWEEP = r"""
             auto q = FACE(A[j], A[7*span+j], A[2*span+j], A[9*span+j], A[span+j], A[8*span+j], A[10*span+j],
                 A[11*span+j], A[12*span+j],
                 B[j], B[7*span+j], B[2*span+j], B[9*span+j], B[span+j], B[8*span+j], B[10*span+j],
-                B[11*span+j], B[12*span+j], zc[j] - zs[j], contact);
+                B[11*span+j], B[12*span+j], zc[j] - zs[j], r, contact);
             N[j] = q[0]; N[span+j] = q[1]; N[2*span+j] = q[2]; N[3*span+j] = q[3];
         }
         if (i - 1 == s.nrows + 1)
-            for (int j = 1; j <= count; ++j) edge[3*edge_pitch + col0 - 3 + j] += (double)(r * N[j]);
+            for (int j = 1; j <= count; ++j) edge[3*edge_pitch + col0 - 3 + j] += (double)N[j];
         if (i == 2)
-            for (int j = 1; j <= count; ++j) edge[2*edge_pitch + col0 - 3 + j] -= (double)(r * N[j]);
+            for (int j = 1; j <= count; ++j) edge[2*edge_pitch + col0 - 3 + j] -= (double)N[j];
         if (i == row0) continue;
 
         float* __restrict__ E = scratch + (size_t)34 * span;
@@ -94,11 +94,11 @@ _SWEEP = r"""
             auto q = FACE(A[j], A[3*span+j], A[span+j], A[4*span+j], A[2*span+j], A[5*span+j], A[6*span+j],
                 A[11*span+j], A[12*span+j],
                 A[j+1], A[3*span+j+1], A[span+j+1], A[4*span+j+1], A[2*span+j+1], A[5*span+j+1],
-                A[6*span+j+1], A[11*span+j+1], A[12*span+j+1], zs[j+1] - zs[j], contact);
+                A[6*span+j+1], A[11*span+j+1], A[12*span+j+1], zs[j+1] - zs[j], r, contact);
             E[j] = q[0]; E[span+j] = q[1]; E[2*span+j] = q[2]; E[3*span+j] = q[3];
         }
-        if (col0 == 2) edge[i - 3] -= (double)(r * E[0]);
-        if (col0 + count == s.ncols + 2) edge[edge_pitch + i - 3] += (double)(r * E[count]);
+        if (col0 == 2) edge[i - 3] -= (double)E[0];
+        if (col0 + count == s.ncols + 2) edge[edge_pitch + i - 3] += (double)E[count];
 
         const float* __restrict__ S = scratch + (size_t)(26 + ((i - 1) & 1) * 4) * span;
         const size_t to = (size_t)(i - 1) * pitch + (col0 - 1);
@@ -215,7 +215,7 @@ def step_chunks(
             dt,
             dt,
         )
-        b = face_flux(dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt)
+        b = face_flux(dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt)
         c = update_cell(
             dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt
         )

@@ -54,22 +54,22 @@ def predict_at(f: Fields, s: Scheme, i: int, j: int, half_dt: float) -> predicti
 
 
 @wp.func
-def flux_x(l: prediction, r: prediction, z_step: float, contact: float) -> wp.vec4:
+def flux_x(l: prediction, r: prediction, z_step: float, dt_dx: float, contact: float) -> wp.vec4:
     """Flux through the face between a western and an eastern cell."""
     return face_flux(
         l[0], l[3], l[1], l[4], l[2], l[5], l[6], l[11], l[12],
         r[0], r[3], r[1], r[4], r[2], r[5], r[6], r[11], r[12],
-        z_step, contact,
+        z_step, dt_dx, contact,
     )  # fmt: skip
 
 
 @wp.func
-def flux_y(l: prediction, r: prediction, z_step: float, contact: float) -> wp.vec4:
+def flux_y(l: prediction, r: prediction, z_step: float, dt_dx: float, contact: float) -> wp.vec4:
     """Flux through the face between a southern and a northern cell; v is normal."""
     return face_flux(
         l[0], l[7], l[2], l[9], l[1], l[8], l[10], l[11], l[12],
         r[0], r[7], r[2], r[9], r[1], r[8], r[10], r[11], r[12],
-        z_step, contact,
+        z_step, dt_dx, contact,
     )  # fmt: skip
 
 
@@ -88,11 +88,12 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> f
         return 0.0
 
     half_dt = 0.5 * dt
+    r = dt / s.dx
     c = predict_at(f, s, i, j, half_dt)
-    e = flux_x(c, predict_at(f, s, i, j + 1, half_dt), f.z[i, j + 1] - z, s.contact)
-    w = flux_x(predict_at(f, s, i, j - 1, half_dt), c, z - f.z[i, j - 1], s.contact)
-    n = flux_y(c, predict_at(f, s, i + 1, j, half_dt), f.z[i + 1, j] - z, s.contact)
-    b = flux_y(predict_at(f, s, i - 1, j, half_dt), c, z - f.z[i - 1, j], s.contact)
+    e = flux_x(c, predict_at(f, s, i, j + 1, half_dt), f.z[i, j + 1] - z, r, s.contact)
+    w = flux_x(predict_at(f, s, i, j - 1, half_dt), c, z - f.z[i, j - 1], r, s.contact)
+    n = flux_y(c, predict_at(f, s, i + 1, j, half_dt), f.z[i + 1, j] - z, r, s.contact)
+    b = flux_y(predict_at(f, s, i - 1, j, half_dt), c, z - f.z[i - 1, j], r, s.contact)
     q = update_cell(
         h, u, v, c[0], c[3] + c[6], c[7] + c[10],
         e[0], e[1], e[3], w[0], w[2], w[3],
@@ -114,15 +115,14 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> f
     f.hazard_max[i, j] = m[4]
     f.arrival[i, j] = m[5]
 
-    r = dt / s.dx
     if j == 2:
-        f.edge_flow[0, i - 2] = f.edge_flow[0, i - 2] - wp.float64(r * w[0])
+        f.edge_flow[0, i - 2] = f.edge_flow[0, i - 2] - wp.float64(w[0])
     if j == s.ncols + 1:
-        f.edge_flow[1, i - 2] = f.edge_flow[1, i - 2] + wp.float64(r * e[0])
+        f.edge_flow[1, i - 2] = f.edge_flow[1, i - 2] + wp.float64(e[0])
     if i == 2:
-        f.edge_flow[2, j - 2] = f.edge_flow[2, j - 2] - wp.float64(r * b[0])
+        f.edge_flow[2, j - 2] = f.edge_flow[2, j - 2] - wp.float64(b[0])
     if i == s.nrows + 1:
-        f.edge_flow[3, j - 2] = f.edge_flow[3, j - 2] + wp.float64(r * n[0])
+        f.edge_flow[3, j - 2] = f.edge_flow[3, j - 2] + wp.float64(n[0])
     return m[6]
 
 
