@@ -15,15 +15,20 @@ import numpy.typing as npt
 from solver_service.numerics.fields import TILE
 
 
-def _spans(row: npt.NDArray[np.bool_], ncols: int, widest: int) -> list[tuple[int, int]]:
-    """Column ranges [first, last) of the runs of active tiles in a row of tiles."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], row.astype(np.int8), [0]])))
-    spans = []
-    for begin, end in edges.reshape(-1, 2):
-        first, last = int(begin) * TILE, min(int(end) * TILE, ncols)
+def _spans(mask: npt.NDArray[np.bool_], ncols: int, widest: int) -> dict[int, list[tuple[int, int]]]:
+    """Column ranges [first, last) of the runs of active tiles, by row of tiles."""
+    padded = np.zeros((mask.shape[0], mask.shape[1] + 2), np.int8)
+    padded[:, 1:-1] = mask
+    change = np.diff(padded, axis=1)
+    rows, begins = np.nonzero(change == 1)
+    ends = np.nonzero(change == -1)[1]
+    spans: dict[int, list[tuple[int, int]]] = {}
+    for row, begin, end in zip(rows.tolist(), begins.tolist(), ends.tolist(), strict=True):
+        first, last = begin * TILE, min(end * TILE, ncols)
         pieces = -(-(last - first) // widest)
         width = -(-(last - first) // (pieces * TILE)) * TILE
-        spans += [(col, min(col + width, last)) for col in range(first, last, width)]
+        cuts = [(col, min(col + width, last)) for col in range(first, last, width)]
+        spans.setdefault(row, []).extend(cuts)
     return spans
 
 
@@ -45,10 +50,11 @@ def cut_chunks(
     highest = max(1, -(-mask.shape[0] // (4 * threads)))
     chunks: list[list[int]] = []
     growing: dict[tuple[int, int], list[int]] = {}
-    for tile_row, row in enumerate(mask):
+    spans = _spans(mask, ncols, widest)
+    for tile_row in range(mask.shape[0]):
         row0, row1 = tile_row * TILE, min((tile_row + 1) * TILE, nrows)
         now: dict[tuple[int, int], list[int]] = {}
-        for span in _spans(row, ncols, widest):
+        for span in spans.get(tile_row, ()):
             chunk = growing.get(span)
             if chunk is None or row0 - chunk[0] >= highest * TILE:
                 chunk = [row0, row1, *span]

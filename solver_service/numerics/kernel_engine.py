@@ -8,6 +8,8 @@ it began with.
 
 from __future__ import annotations
 
+import gc
+
 import numpy as np
 import warp as wp
 
@@ -88,7 +90,7 @@ class KernelEngine(Engine):
             wp.capture_while(self._go_on, self._take_steps)
         else:
             if self._graph is None:
-                wp.load_module(device=self._device)
+                gc.collect()  # a collection on another thread would end the capture
                 with wp.ScopedCapture(device=self._device) as capture:
                     wp.capture_while(self._go_on, self._take_steps)
                 self._graph = capture.graph
