@@ -15,9 +15,9 @@ def tracked_files() -> list[Path]:
     names = tracked_names()
     if names is not None:
         return [REPOSITORY / name for name in names]
-    built = {".git", ".venv", ".cache", "build", "dist", "out", "site", "__pycache__"}
+    built = re.compile(r"\.(?!ci$).+|build|dist|out|site|__pycache__|.+\.egg-info")
     every = (path for path in REPOSITORY.rglob("*") if path.is_file())
-    return [path for path in every if not built & set(path.relative_to(REPOSITORY).parts)]
+    return [path for path in every if not any(map(built.fullmatch, path.relative_to(REPOSITORY).parts[:-1]))]
 
 
 FILES = tracked_files()

@@ -6,14 +6,14 @@ import sys
 import tomllib
 import zipfile
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import Version
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+from tests.repo.tracked import REPOSITORY, tracked_names
+
 PACKAGES = ("protocol", "solver_service", "viewer")
 PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 LOCK = (REPOSITORY / ".ci" / "requirements.lock").read_text(encoding="utf-8")
@@ -75,61 +75,22 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> zipfile.ZipFile:
     source, folder = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("wheel")
     # From a copy of what git knows: a build in the tree would leave folders behind, and would not notice that
     # a file was never added.
-    listing = subprocess.run(
-        [
-            "git",
-            "-c",
-            "safe.directory=*",
-            "ls-files",
-            "-z",
-            "--",
-            *PACKAGES,
-            "pyproject.toml",
-            "README.md",
-            "LICENSE",
-        ],
-        cwd=REPOSITORY,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if listing.returncode != 0:
-        pytest.skip("this is no git clone, so what a clone would hold is not known")
-    for name in filter(None, listing.stdout.split("\0")):
-        if (REPOSITORY / name).is_file():
-            (source / name).parent.mkdir(parents=True, exist_ok=True)
-            (source / name).write_bytes((REPOSITORY / name).read_bytes())
-    command = [
-        sys.executable,
-        "-m",
-        "pip",
-        "wheel",
-        "--quiet",
-        "--no-deps",
-        "--no-build-isolation",
-        "--no-index",
-    ]
-    built = subprocess.run(
-        [*command, "--wheel-dir", str(folder), str(source)],
-        capture_output=True,
-        text=True,
-        timeout=180,
-        check=False,
-    )
+    names = tracked_names(*PACKAGES, "pyproject.toml", "README.md", "LICENSE")
+    if names is None:
+        pytest.skip("this is no git clone, or git is not installed: what a clone would hold is not known")
+    for name in names:
+        (source / name).parent.mkdir(parents=True, exist_ok=True)
+        (source / name).write_bytes((REPOSITORY / name).read_bytes())
+    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--no-index"]
+    command = [*pip, "--wheel-dir", str(folder), str(source)]
+    built = subprocess.run(command, capture_output=True, text=True, timeout=180, check=False)
     assert built.returncode == 0, built.stderr
     (path,) = folder.glob("*.whl")
     return zipfile.ZipFile(path)
 
 
 def test_the_wheel_holds_every_file_of_the_three_packages(wheel: zipfile.ZipFile) -> None:
-    listing = subprocess.run(
-        ["git", "-c", "safe.directory=*", "ls-files", "-z", "--", *PACKAGES],
-        cwd=REPOSITORY,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    tracked = {name for name in listing.stdout.split("\0") if name and (REPOSITORY / name).is_file()}
+    tracked = set(tracked_names(*PACKAGES) or [])
     packed = {name for name in wheel.namelist() if name.split("/")[0] in PACKAGES}
 
     assert packed == tracked
