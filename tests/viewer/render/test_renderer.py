@@ -2,43 +2,20 @@
 
 import math
 from collections.abc import Callable
-from itertools import pairwise
 
 import moderngl
 import numpy as np
 import pytest
 
-from viewer.errors import TerrainDataError
+from tests.viewer.render.views import BARE, INSIDE, VIEWS, magenta_pixels
 from viewer.render import (
-    EditOverlay,
     FrameInputs,
-    HudText,
     RenderOptions,
-    WaterFrame,
-    WaterPair,
-    WaterStyle,
     march_ray,
 )
-from viewer.world import Camera, Heightfield, overview
+from viewer.world import Camera, Heightfield
 
 pytestmark = pytest.mark.gl
-
-MAGENTA = (1.0, 0.0, 1.0)
-BARE = {"show_sky": False, "show_skirt": False, "fog": False, "background": MAGENTA}
-
-INSIDE = [
-    Camera((0.0, 20.0, 0.0), 260.0, 0.4, math.radians(45.0)),
-    Camera((300.0, 20.0, 200.0), 330.0, 2.4, math.radians(52.0)),
-    Camera((-400.0, 20.0, -100.0), 200.0, -1.7, math.radians(60.0)),
-    Camera((100.0, 20.0, -300.0), 500.0, 4.0, math.radians(48.0)),
-]
-"""Steep views inside the map: no sky, no border."""
-
-VIEWS = [*INSIDE, overview(3210.0, 2570.0, 20.0), Camera((0.0, 40.0, 0.0), 700.0, 0.9, math.radians(14.0))]
-
-
-def magenta_pixels(picture: np.ndarray) -> int:
-    return int((picture == [255, 0, 255]).all(axis=2).sum())
 
 
 def triangle_height(field: Heightfield, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -243,218 +220,6 @@ def test_the_sky_and_places_outside_of_the_picture_are_nowhere(
     assert stage.renderer.pick(240.0, 2.0) is None
     assert stage.renderer.pick(-1.0, 50.0) is None
     assert stage.renderer.pick(50.0, 300.0) is None
-
-
-# --- water ---------------------------------------------------------------------------------------------
-
-
-def lake(field: Heightfield, level: float) -> np.ndarray:
-    return np.maximum(level - field.z_b, 0.0).astype(np.float32)
-
-
-def drawn_heights(stage) -> np.ndarray:
-    """World height of what is drawn at each pixel [m], lowest row first."""
-    depth, back = stage.renderer.read_depth()
-    rows, cols = np.mgrid[: depth.shape[0], : depth.shape[1]]
-    return back.world(cols, rows, depth)[..., 1]
-
-
-def wet_pixels(stage, field: Heightfield, h: np.ndarray, camera: Camera, **options: object) -> tuple:
-    """Where water lies before the ground, and the greatest and least depth of the cells around each pixel."""
-    plain = {**BARE, **options}
-    stage.draw(FrameInputs(camera, options=RenderOptions(**plain)))
-    ground = drawn_heights(stage)
-    frame = WaterFrame("lake", h)
-    stage.draw(FrameInputs(camera, WaterPair(frame, frame), options=RenderOptions(**plain)))
-    depth, back = stage.renderer.read_depth()
-    changed = drawn_heights(stage) > ground + 0.05
-    rows, cols = np.mgrid[: depth.shape[0], : depth.shape[1]]
-    world = back.world(cols, rows, depth)
-    grid = field.grid
-    row, col = grid.to_cell(world[..., 0] + field.frame.x_centre, field.frame.y_centre - world[..., 2])
-    r = np.clip(np.rint(row).astype(int), 0, grid.nrows - 1)
-    c = np.clip(np.rint(col).astype(int), 0, grid.ncols - 1)
-    reach = np.stack(
-        [
-            h[np.clip(r + i, 0, grid.nrows - 1), np.clip(c + j, 0, grid.ncols - 1)]
-            for i in (-1, 0, 1)
-            for j in (-1, 0, 1)
-        ]
-    )
-    on_map = depth < 1.0
-    return (
-        changed & on_map,
-        np.where(on_map, reach.max(axis=0), 0.0),
-        np.where(on_map, reach.min(axis=0), 0.0),
-    )
-
-
-def test_water_shows_where_cells_are_wet_and_nowhere_else(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly, (640, 360))
-    h = lake(hilly, -10.0)
-    for camera in (
-        Camera((0.0, 0.0, 0.0), 1200.0, 2.0, math.radians(65.0)),
-        Camera((0.0, 0.0, 0.0), 900.0, 0.9, math.radians(50.0)),
-    ):
-        shown, deepest_near, shallowest_near = wet_pixels(stage, hilly, h, camera, full_mesh=True)
-        assert 0.05 < shown.mean() < 0.9
-        assert not (shown & (deepest_near == 0.0)).any()
-        assert shown[shallowest_near > 0.5].mean() > 0.999
-
-
-def test_water_that_is_not_there_fails_that_test(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly, (640, 360))
-    h = lake(hilly, -10.0)
-    shown, _, _ = wet_pixels(
-        stage, hilly, h, Camera((0.0, 0.0, 0.0), 1200.0, 2.0, math.radians(65.0)), full_mesh=True
-    )
-    stage.draw(
-        FrameInputs(Camera((0.0, 0.0, 0.0), 1200.0, 2.0, math.radians(65.0)), options=RenderOptions(**BARE))
-    )
-    _, elsewhere, _ = wet_pixels(
-        stage,
-        hilly,
-        np.roll(h, 40, 1),
-        Camera((0.0, 0.0, 0.0), 1200.0, 2.0, math.radians(65.0)),
-        full_mesh=True,
-    )
-
-    assert (shown & (elsewhere == 0.0)).sum() > 100
-
-
-def test_under_wet_blocks_nothing_shows_through(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly)
-    deep = WaterFrame("deep", np.full(hilly.z_b.shape, 4.0, dtype=np.float32))
-    film = WaterFrame("film", np.full(hilly.z_b.shape, 0.004, dtype=np.float32))
-    for water in (deep, film):
-        for camera in INSIDE:
-            picture = stage.draw(FrameInputs(camera, WaterPair(water, water), options=RenderOptions(**BARE)))
-            assert magenta_pixels(picture) == 0
-            assert stage.stats.terrain_triangles == 0
-            assert stage.stats.covered_blocks > 0
-
-
-def test_no_crack_shows_between_water_and_ground(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly)
-    water = WaterFrame("lake", lake(hilly, 5.0))
-    for camera in INSIDE:
-        for spacing in (0.0, 6.0):
-            options = RenderOptions(tau_px=8.0, water_spacing_px=spacing, partial_spacing_px=spacing, **BARE)
-            picture = stage.draw(FrameInputs(camera, WaterPair(water, water), options=options))
-            assert magenta_pixels(picture) == 0
-
-
-def test_a_film_too_thin_to_show_looks_like_the_ground(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly)
-    film = WaterFrame("film", np.full(hilly.z_b.shape, 0.004, dtype=np.float32))
-    options = RenderOptions(full_mesh=True, depth_shown=0.01, **BARE)
-    ground = stage.draw(FrameInputs(INSIDE[0], options=options))
-    wet = stage.draw(FrameInputs(INSIDE[0], WaterPair(film, film), options=options))
-
-    assert np.abs(ground.astype(int) - wet).mean() < 1.0
-
-
-def test_between_two_frames_water_rises_steadily(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly, (320, 200))
-    camera = Camera((0.0, 0.0, 0.0), 900.0, 0.0, math.pi / 2)
-    low, high = WaterFrame("low", lake(hilly, -30.0)), WaterFrame("high", lake(hilly, 20.0))
-    dry = stage.draw(FrameInputs(camera, options=RenderOptions(**BARE))).astype(int)
-    wet = []
-    for alpha in (0.0, 0.25, 0.5, 0.75, 1.0):
-        picture = stage.draw(FrameInputs(camera, WaterPair(low, high, alpha), options=RenderOptions(**BARE)))
-        wet.append(int((np.abs(picture - dry).max(axis=2) > 12).sum()))
-
-    assert wet == sorted(wet)
-    assert wet[0] < wet[2] < wet[4]
-
-
-def test_a_frame_that_dried_up_leaves_no_water_behind(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly)
-    camera, options = INSIDE[0], RenderOptions(**BARE)
-    dry = stage.draw(FrameInputs(camera, options=options))
-    for number, level in enumerate((30.0, -20.0, 10.0)):
-        frame = WaterFrame(number, lake(hilly, level))
-        stage.draw(FrameInputs(camera, WaterPair(frame, frame), options=options))
-    nothing = WaterFrame("dry", np.zeros(hilly.z_b.shape, dtype=np.float32))
-    picture = stage.draw(FrameInputs(camera, WaterPair(nothing, nothing), options=options))
-
-    assert np.array_equal(picture, dry)
-
-
-def test_the_same_frame_drawn_again_is_the_same_picture(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly)
-    frame = WaterFrame("lake", lake(hilly, 0.0))
-    inputs = FrameInputs(VIEWS[4], WaterPair(frame, frame), hud=HudText(title="a", time="b"))
-
-    assert np.array_equal(stage.draw(inputs), stage.draw(inputs))
-
-
-def test_depth_classes_have_the_colours_of_the_legend(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly)
-    camera = Camera((0.0, 0.0, 0.0), 500.0, 0.0, math.pi / 2)
-    means = []
-    for depth in (0.1, 0.4, 0.9, 5.0):
-        frame = WaterFrame(depth, np.full(hilly.z_b.shape, depth, dtype=np.float32))
-        options = RenderOptions(water_style=WaterStyle.DEPTH_CLASSES, **BARE)
-        means.append(
-            stage.draw(FrameInputs(camera, WaterPair(frame, frame), options=options)).mean(axis=(0, 1))
-        )
-
-    assert all(earlier.sum() > later.sum() + 40.0 for earlier, later in pairwise(means))
-    assert means[0][0] > means[0][2] + 30.0  # shallow is yellow
-    assert means[3][2] > means[3][1] + 20.0  # deep is purple
-
-
-def test_a_raised_preview_stands_out_of_the_water_at_an_unchanged_level(
-    hilly: Heightfield, make_stage: Callable
-) -> None:
-    stage = make_stage(hilly)
-    camera = Camera((0.0, 0.0, 0.0), 600.0, 0.0, math.pi / 2)
-    bed = hilly.z_b
-    frame = WaterFrame("flood", np.full(bed.shape, 2.0, dtype=np.float32), z_b=bed)
-    edited = bed.copy()
-    edited[110:150, 158:163] += 3.0
-    hilly.set(edited, (110, 158, 150, 163))
-    sign = np.sign(edited - bed).astype(np.int8)
-    picture = stage.draw(
-        FrameInputs(camera, WaterPair(frame, frame), EditOverlay(1, sign), RenderOptions(**BARE))
-    )
-    place = stage.renderer.pick(240.0, 150.0)
-
-    assert place is not None
-    assert place[2] == pytest.approx(hilly.sample(place[0], place[1]), abs=0.2)
-    assert magenta_pixels(picture) == 0
-    aside = stage.renderer.pick(400.0, 150.0)
-    assert aside is not None
-    assert aside[2] == pytest.approx(hilly.sample(aside[0], aside[1]) + 2.0, abs=0.2)
-
-
-def test_water_of_another_size_is_refused(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly)
-    frame = WaterFrame("small", np.zeros((10, 10), dtype=np.float32))
-
-    with pytest.raises(TerrainDataError, match=r"water depth has shape \(10, 10\)"):
-        stage.draw(FrameInputs(VIEWS[0], WaterPair(frame, frame)))
-
-
-# --- edits ---------------------------------------------------------------------------------------------
-
-
-def test_raised_ground_is_warm_and_lowered_ground_is_cool(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly)
-    camera = Camera((0.0, 0.0, 0.0), 600.0, 0.0, math.pi / 2)
-    sign = np.zeros(hilly.z_b.shape, dtype=np.int8)
-    sign[:, :160], sign[:, 161:] = 1, -1
-    plain = stage.draw(FrameInputs(camera, options=RenderOptions(**BARE))).astype(int)
-    marked = stage.draw(
-        FrameInputs(camera, edits=EditOverlay(1, sign), options=RenderOptions(**BARE))
-    ).astype(int)
-    again = stage.draw(FrameInputs(camera, options=RenderOptions(**BARE))).astype(int)
-    left, right = marked[:, 10:200].mean(axis=(0, 1)), marked[:, 280:470].mean(axis=(0, 1))
-
-    assert left[0] > left[2] + 60.0
-    assert right[2] > right[0] + 60.0
-    assert np.array_equal(plain, again)
 
 
 # --- options and targets --------------------------------------------------------------------------------
