@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from solver_service.errors import CaseError
+from solver_service.terrain import BROKEN_ARCHIVE
 
 CASE_FILE = "case.toml"
 ARCHIVE_SUFFIX = ".fevcase"
@@ -133,7 +134,7 @@ def _unpack(archive_path: Path, target: Path) -> None:
                 )
             for entry in entries:
                 _unpack_entry(archive, entry, archive_path, target)
-    except (zipfile.BadZipFile, OSError, RuntimeError, EOFError) as error:
+    except BROKEN_ARCHIVE as error:
         raise CaseError(f"{archive_path}: cannot be unpacked: {error}.") from error
 
 

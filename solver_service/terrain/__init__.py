@@ -10,12 +10,13 @@ from solver_service.terrain.projection import (
     same_crs,
     utm_zone,
 )
-from solver_service.terrain.raster import Raster, crop
+from solver_service.terrain.raster import BROKEN_ARCHIVE, Raster, crop
 from solver_service.terrain.read_dem import FORMATS, format_of, read_dem
 from solver_service.terrain.resample import resample, sample
 from solver_service.terrain.terrain import Terrain, datum_offset, make_terrain
 
 __all__ = [
+    "BROKEN_ARCHIVE",
     "FORMATS",
     "LOCAL",
     "Raster",

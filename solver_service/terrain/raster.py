@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import lzma
 import math
+import struct
+import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +15,19 @@ from numpy.typing import NDArray
 
 from protocol.limits import MAX_CELLS
 from solver_service.errors import TerrainError
+
+BROKEN_ARCHIVE = (
+    OSError,
+    EOFError,
+    MemoryError,
+    RuntimeError,
+    ValueError,
+    lzma.LZMAError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What reading a damaged zip or gzip archive may raise."""
 
 NO_DATA_BEYOND = 1e30
 """Values of this size or larger [m] mean no data, whatever the file says of its NoData value."""

@@ -6,6 +6,7 @@ driver, fixed by the first bytes of the file, and GDAL neither lists folders nor
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 from solver_service.errors import TerrainError
@@ -56,11 +57,15 @@ def _head(path: Path) -> bytes:
 
 def _read(path: Path, driver: str) -> Raster:
     import rasterio
-    from rasterio.errors import RasterioError
+    from rasterio.errors import NotGeoreferencedWarning, RasterioError
 
     quiet = {"GDAL_DISABLE_READDIR_ON_OPEN": "EMPTY_DIR", "GDAL_PAM_ENABLED": "NO"}
     try:
-        with rasterio.Env(**quiet), rasterio.open(path.resolve(), driver=driver) as source:
+        with (
+            warnings.catch_warnings(action="ignore", category=NotGeoreferencedWarning),
+            rasterio.Env(**quiet),
+            rasterio.open(path.resolve(), driver=driver) as source,
+        ):
             check_size(path, source.height, source.width)
             if source.count != 1:
                 raise TerrainError(f"Raster '{path.name}' has {source.count} bands; one band is allowed.")
@@ -79,5 +84,5 @@ def _read(path: Path, driver: str) -> Raster:
             bottom = turn.f + source.height * turn.e
             crs = source.crs.to_wkt() if source.crs else None
             return Raster(values, turn.c, bottom, turn.a, -turn.e, crs)
-    except (RasterioError, OSError) as error:
+    except (RasterioError, OSError, ValueError) as error:
         raise TerrainError(f"File '{path.name}' cannot be read as {driver}: {error}.") from error

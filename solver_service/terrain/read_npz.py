@@ -7,6 +7,7 @@ differences along both axes says so with the scalar `<key>_differences` = 1.
 
 from __future__ import annotations
 
+import tokenize
 import zipfile
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from protocol.limits import MAX_CELLS
 from solver_service.errors import TerrainError
-from solver_service.terrain.raster import Raster, check_size, one_mask
+from solver_service.terrain.raster import BROKEN_ARCHIVE, Raster, check_size, one_mask
 
 
 def read_npz(
@@ -49,7 +50,7 @@ def read_npz(
                 for name in ("x0", "y0", "dx")
                 if name in data and data[name].size == 1
             }
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+    except (*BROKEN_ARCHIVE, KeyError, SyntaxError, tokenize.TokenError, TypeError) as error:
         raise TerrainError(f"File '{path.name}' cannot be read as a NumPy archive: {error}.") from error
     if values.ndim != 2:
         raise TerrainError(f"Array '{key}' of '{path.name}' has {values.ndim} dimensions; 2 are allowed.")

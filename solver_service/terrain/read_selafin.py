@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver_service.errors import TerrainError
-from solver_service.terrain.raster import Raster, check_size
+from solver_service.terrain.raster import BROKEN_ARCHIVE, Raster, check_size
 
 MAX_FILE_BYTES = 1 << 30
 BED_NAMES = ("BOTTOM", "FOND", "BATHYMETRY")
@@ -79,7 +79,7 @@ def read_mesh(path: Path) -> Mesh:
         with path.open("rb") as packed:
             zipped = path.suffix.lower() == ".gz"
             data = (gzip.GzipFile(fileobj=packed) if zipped else packed).read(MAX_FILE_BYTES + 1)
-    except (OSError, EOFError) as error:
+    except BROKEN_ARCHIVE as error:
         raise TerrainError(f"Mesh '{path.name}' cannot be read: {error}.") from error
     if len(data) > MAX_FILE_BYTES:
         raise TerrainError(f"Mesh '{path.name}' is larger than {MAX_FILE_BYTES} bytes unpacked.")
@@ -119,7 +119,7 @@ def _parse(records: list[bytes]) -> Mesh:
     if triangles.min() < 0 or triangles.max() >= nodes:
         raise ValueError(f"its triangles name nodes outside 1 to {nodes}")
     next(stream)
-    x, y = (_floats(next(stream), nodes) for _ in range(2))
+    x, y = [_floats(next(stream), nodes) for _ in range(2)]
     next(stream)
     bed = next((k for k, name in enumerate(names) if name.startswith(BED_NAMES)), None)
     if bed is None:

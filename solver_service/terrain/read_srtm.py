@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from solver_service.errors import TerrainError
-from solver_service.terrain.raster import Raster, one_mask
+from solver_service.terrain.raster import BROKEN_ARCHIVE, Raster, one_mask
 
 NAME = re.compile(r"([NS])(\d{2})([EW])(\d{3})", re.IGNORECASE)
 SIDES = (1201, 3601)
@@ -65,5 +65,5 @@ def _unpacked(path: Path) -> bytes:
             if tiles[0].file_size > 2 * max(SIDES) ** 2:
                 raise TerrainError(f"The tile in '{path.name}' is larger than any SRTM tile.")
             return archive.read(tiles[0])
-    except (OSError, zipfile.BadZipFile, RuntimeError) as error:
+    except BROKEN_ARCHIVE as error:
         raise TerrainError(f"Archive '{path.name}' cannot be read: {error}.") from error
