@@ -187,3 +187,16 @@ def test_blocked_cells_stay_dry_and_keep_the_water_out():
     s.advance_to(30.0)
     assert (s.depth()[:, :20] == 3.0).all()
     assert not s.depth()[:, 20:].any()
+
+
+def test_films_that_drain_into_a_deep_lake_never_become_negative():
+    rng = np.random.default_rng(5)
+    z = np.zeros((40, 40), np.float32)
+    z[:, 20:] = 200.0 + 3.0 * rng.random((40, 20))
+    h = np.where(z > 0.0, 10.0 ** rng.uniform(-5.0, -2.5, z.shape), 199.5).astype(np.float32)
+    s = solver(FloodModel(5.0, z, 0.02), threads=1)
+    s.set_water(h)
+    for time in np.arange(0.2, 6.0, 0.2):
+        s.advance_to(float(time))
+        assert s.depth().min() >= 0.0
+    assert s.depth()[:, 20:].sum() < h[:, 20:].sum()
