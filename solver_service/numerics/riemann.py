@@ -136,8 +136,8 @@ def face_flux(
     )
     normal_l = (normal + 0.5 * dp) + pull_l
     normal_r = (normal - 0.5 * dp) + pull_r
-    # Rounds to a multiple of the last place of 2 max(h_l, h_r); mirrored faces round alike. A donor so shallow
-    # that this could take more than it has is spared.
+    # Rounds to a multiple of the last place of 2 max(h_l, h_r); mirrored faces round alike. A donor too
+    # shallow to pay for that is spared.
     anchor = 2.0 * wp.max(h_l, h_r)
     donor = wp.where(mass < 0.0, h_r, h_l)
     moved = dt_dx * wp.abs(mass)
