@@ -17,7 +17,13 @@ CREDIT = 16
 
 
 class ServiceListener(Protocol):
-    """Who is told what the service says."""
+    """Who is told what the service says.
+
+    Attributes:
+        is_stale: set whenever anything was said.
+    """
+
+    is_stale: bool
 
     def connection_opened(self) -> None:
         """A connection stands, the first one or one after a loss."""
@@ -64,6 +70,7 @@ class ServiceDesk:
         # Frames first: what was said before a frame came is then known before it is used.
         frames = self.connection.mailbox.take_frames()
         for message in self.connection.mailbox.take_control():
+            self._listener.is_stale = True
             self._handle(message)
         if frames:
             self._link.grant(len(frames))
