@@ -77,7 +77,9 @@ class RunReports:
 
     def lost(self, worker: Worker) -> None:
         """A worker died with a run in its hands."""
-        run = self._tree.get(worker.run or "")
+        if worker.run is None or worker.run not in self._tree:
+            return  # it was loading a case for a run that is not made yet; whoever waits for that is told
+        run = self._tree.get(worker.run)
         run.worker = None
         if run.status in ACTIVE:
             reason = "its worker process ended unexpectedly; resume goes on from the last checkpoint"

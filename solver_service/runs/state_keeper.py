@@ -58,7 +58,9 @@ class StateKeeper:
             then: called by the thread of the keeper once the state is stored or refused.
         """
         with self._wake:
-            self._to_disk.append((run, state, then))
+            # a disk that is slower than the solver gets the newest state of a run, not a growing queue
+            waiting = [job for job in self._to_disk if job[0] != run or job[2] is not None]
+            self._to_disk = deque([*waiting, (run, state, then)])
             self._wake.notify_all()
 
     def flush(self) -> None:

@@ -112,17 +112,13 @@ class StateRing:
             self._entries.remove(min(self._entries[:-1], key=self._gap_without))
 
     def _gap_without(self, entry: _Entry) -> float:
-        """Gap in the time line of its run without this entry; an end counts as twice its gap."""
+        """Gap in the time line of its run without this entry; the newest counts as twice its gap."""
         times = [e.time for e in self._entries if e.run == entry.run]
         before = max((t for t in times if t < entry.time), default=None)
         after = min((t for t in times if t > entry.time), default=None)
-        if before is None and after is None:
-            return float("inf")
-        if before is None or after is None:
-            neighbour = after if before is None else before
-            assert neighbour is not None
-            return 2.0 * abs(neighbour - entry.time)
-        return after - before
+        if before is None:
+            return float("inf")  # the first is where a replay begins when all others are gone
+        return after - before if after is not None else 2.0 * (entry.time - before)
 
 
 def _pack(array: NDArray[Any]) -> _PackedArray:
