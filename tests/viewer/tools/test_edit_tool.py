@@ -3,7 +3,9 @@ from viewer.tools import EditTool, PointerEvent
 
 
 def test_a_click_sets_a_point() -> None:
-    assert EditTool().handle(PointerEvent("press", 0.5, 0.5, "left", ground=(1.0, 2.0))) == [AddVertex(1.0, 2.0)]
+    assert EditTool().handle(PointerEvent("press", 0.5, 0.5, "left", ground=(1.0, 2.0))) == [
+        AddVertex(1.0, 2.0)
+    ]
 
 
 def test_a_double_click_finishes_without_setting_its_point_twice() -> None:
