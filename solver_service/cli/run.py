@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import sys
 from typing import Any
 
@@ -38,6 +39,8 @@ def run_offline(name: str, options: OfflineOptions, cell_size: float | None, jso
     import warp as wp
 
     wp.config.log_level = wp.LOG_ERROR
+    # An end by a signal unwinds like any other, so that no half-written folder stays behind.
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
     case = load_case(name, cell_size)
     summary = _with_progress(case.title, lambda on_frame: run_case(case, options, on_frame))
     if json_line:

@@ -1,6 +1,7 @@
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -62,3 +63,25 @@ def test_a_disk_that_takes_no_more_is_one_sentence_and_leaves_nothing(tmp_path: 
     assert "results cannot be written to" in answer.stderr
     assert "nothing was kept" in answer.stderr
     assert list((tmp_path / "results").iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows ends a process without telling it")
+def test_a_run_that_is_told_to_end_leaves_nothing(tmp_path: Path) -> None:
+    long = CASE.replace("duration = 20.0", "duration = 1e7").replace("interval = 5.0", "interval = 20.0")
+    case = write_case(tmp_path / "case", long)
+    results = tmp_path / "results"
+    results.mkdir()
+    code = "from solver_service.cli import main; main()"
+    words = [sys.executable, "-c", code, "run", case, "--device", "cpu", "--netcdf", "--out", results / "out"]
+
+    with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as process:
+        deadline = time.monotonic() + 60.0
+        while not list(results.glob(".out-*/timesteps.nc")) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert list(results.iterdir())
+        process.terminate()
+        _, said = process.communicate(timeout=60)
+
+    assert process.returncode == 143
+    assert "Traceback" not in said
+    assert list(results.iterdir()) == []
