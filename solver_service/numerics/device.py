@@ -100,8 +100,14 @@ def warm_kernels(device: str = "auto", *, with_oracle: bool = False) -> float:
         modules.append(STEP_MODULE)
     with _compiler_lock():
         for module in modules:
-            if module.load(wp.get_device(name)) is None:
-                raise DeviceError(f"The kernels of {module.name} do not compile for the device {name}.")
+            try:
+                loaded = module.load(wp.get_device(name))
+            except Exception as error:  # Warp raises the base class when a compiler fails
+                raise DeviceError(
+                    f"The kernels of {module.name} do not compile for {name}: {error}."
+                ) from error
+            if loaded is None:
+                raise DeviceError(f"The kernels of {module.name} cannot be loaded on {name}.")
     return time.perf_counter() - began
 
 

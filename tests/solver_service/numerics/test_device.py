@@ -34,3 +34,14 @@ def test_every_cuda_kernel_compiles_ahead_without_a_gpu(architecture, tmp_path):
         b"record_gauges",
     ):
         assert kernel in code
+
+
+def test_a_compiler_that_fails_is_named_with_its_words(monkeypatch):
+    def fail(device):
+        raise Exception("CPU kernel build failed with error code 1")
+
+    from solver_service.numerics import device
+
+    monkeypatch.setattr(device.ROWS_MODULE, "load", fail)
+    with pytest.raises(DeviceError, match=r"warp_rows do not compile for cpu: .*error code 1"):
+        warm_kernels("cpu")
