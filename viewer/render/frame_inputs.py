@@ -22,6 +22,7 @@ __all__ = [
     "WaterFrame",
     "WaterPair",
     "WaterStyle",
+    "same_marks",
 ]
 
 
@@ -85,7 +86,7 @@ class EditOverlay:
     """The marks of terrain edits."""
 
     revision: int
-    """Equal numbers mean an equal sign mask, which is then uploaded once."""
+    """Counts the changes of the sign mask; the same array under the same number is uploaded once."""
     sign: npt.NDArray[np.int8]
     """+1 raised, -1 lowered, 0 untouched, shape [nrows, ncols]."""
     lines: tuple[DrapedLine, ...] = ()
@@ -193,3 +194,10 @@ class FrameStats:
     """Python time of choosing levels [ms]."""
     submission_ms: float
     """Python time of everything else in `Renderer.draw` [ms]."""
+
+
+def same_marks(first: EditOverlay | None, second: EditOverlay | None) -> bool:
+    """Whether two overlays mark the same cells; another run may count its revisions from the start again."""
+    if first is None or second is None:
+        return first is second
+    return first.revision == second.revision and first.sign is second.sign

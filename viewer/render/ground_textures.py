@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from viewer.errors import TerrainDataError
-from viewer.render.frame_inputs import EditOverlay
+from viewer.render.frame_inputs import EditOverlay, same_marks
 from viewer.render.shader_library import build_program, set_uniforms
 from viewer.world.heightfield import Heightfield, Rect
 
@@ -67,7 +67,7 @@ class GroundTextures:
         self._imagery = None if imagery is None else _imagery_texture(ctx, imagery)
         self.mask = ctx.texture((ncols, nrows), 1, np.full((nrows, ncols), 128, dtype=np.uint8), alignment=1)
         self.mask.repeat_x = self.mask.repeat_y = False
-        self._mask_revision: int | None = None
+        self._edits: EditOverlay | None = None
         self._detail = _detail_texture(ctx)
 
         scale = 1.0
@@ -112,7 +112,7 @@ class GroundTextures:
         for unit, (name, texture) in enumerate(zip(_SAMPLERS, textures, strict=True)):
             texture.use(unit)
             set_uniforms(program, **{name: unit})
-        set_uniforms(program, has_edits=int(self._mask_revision is not None))
+        set_uniforms(program, has_edits=int(self._edits is not None))
 
     def release(self) -> None:
         """Give the memory back."""
@@ -160,8 +160,7 @@ class GroundTextures:
         return _OPENNESS_REACH + math.ceil(min(shadow, _SHADOW_REACH_MAX))
 
     def _follow_edits(self, edits: EditOverlay | None) -> None:
-        wanted = None if edits is None else edits.revision
-        if wanted == self._mask_revision:
+        if same_marks(edits, self._edits):
             return
         shape = self._heightfield.z_b.shape
         if edits is None:
@@ -171,7 +170,7 @@ class GroundTextures:
         else:
             raise TerrainDataError(f"edit mask has shape {edits.sign.shape}, the terrain has {shape}")
         self.mask.write(mask, alignment=1)
-        self._mask_revision = wanted
+        self._edits = edits
 
 
 def _imagery_texture(ctx: moderngl.Context, imagery: npt.NDArray[np.uint8]) -> moderngl.Texture:

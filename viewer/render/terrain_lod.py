@@ -14,7 +14,7 @@ from viewer.lod import (
     block_errors,
     edge_errors,
 )
-from viewer.render.frame_inputs import EditOverlay, FrameInputs
+from viewer.render.frame_inputs import EditOverlay, FrameInputs, same_marks
 from viewer.world.coordinates import WorldFrame
 from viewer.world.heightfield import Heightfield, Rect
 
@@ -35,7 +35,7 @@ class TerrainLod:
         self._table = SwitchTable(errors, edge_errors(heightfield.z_b, tiling, errors))
         self._selector = BlockSelector(tiling, heightfield.grid.dx, self._table, self._bounds)
         self._edited: npt.NDArray[np.bool_] | None = None
-        self._edit_revision: int | None = None
+        self._edits: EditOverlay | None = None
 
     def refresh(self, dirty: Rect) -> None:
         """Redo the errors and bounds of the blocks that hold a vertex of a rectangle of cells."""
@@ -61,12 +61,11 @@ class TerrainLod:
 
     def follow_edits(self, edits: EditOverlay | None) -> None:
         """Note which blocks hold an edited vertex: they are drawn at full resolution."""
-        revision = None if edits is None else edits.revision
-        if revision != self._edit_revision:
-            self._edited = None
-            if edits is not None:
-                self._edited = self.tiling.reduce(np.logical_or, edits.sign != 0).astype(np.bool_).ravel()
-            self._edit_revision = revision
+        if same_marks(edits, self._edits):
+            return
+        self._edits, self._edited = edits, None
+        if edits is not None:
+            self._edited = self.tiling.reduce(np.logical_or, edits.sign != 0).astype(np.bool_).ravel()
 
     def select(
         self,

@@ -1,8 +1,10 @@
 import dataclasses
 
+import numpy as np
 import pytest
 
-from viewer.render import FrameInputs, RenderOptions
+from viewer.render import EditOverlay, FrameInputs, RenderOptions
+from viewer.render.frame_inputs import same_marks
 from viewer.world import Camera
 
 
@@ -21,3 +23,13 @@ def test_the_defaults_are_those_of_the_design() -> None:
     assert options.tau_px == 2.0
     assert options.exaggeration == 1.0
     assert options.partial_spacing_px == 0.0  # an exact shore: every vertex of partial blocks is drawn
+
+
+def test_marks_are_the_same_only_for_the_same_array_and_revision() -> None:
+    sign = np.zeros((3, 3), dtype=np.int8)
+
+    assert same_marks(None, None)
+    assert same_marks(EditOverlay(1, sign), EditOverlay(1, sign))
+    assert not same_marks(EditOverlay(1, sign), None)
+    assert not same_marks(EditOverlay(1, sign), EditOverlay(2, sign))
+    assert not same_marks(EditOverlay(1, sign), EditOverlay(1, sign.copy()))
