@@ -1,0 +1,19 @@
+import pytest
+from msgspec import DecodeError
+
+from protocol import GridInfo
+from solver_service.runs.case_facts import CaseFacts
+
+
+def test_facts_come_back_from_the_store_as_they_were() -> None:
+    grid = GridInfo(3, 4, 30.0, 740_010.0, 4_014_000.0, "EPSG:32616", "NGVD29", 300.0)
+    facts = CaseFacts(grid, True, 1e-3, "USGS", "public domain", "2026-11-22T00:00:00+00:00")
+
+    assert CaseFacts.unpack(facts.pack()) == facts
+
+
+def test_torn_facts_are_refused() -> None:
+    packed = CaseFacts(GridInfo(3, 4, 30.0, 0.0, 0.0), False, 1e-3).pack()
+
+    with pytest.raises(DecodeError):
+        CaseFacts.unpack(packed[:-1])
