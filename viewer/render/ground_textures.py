@@ -19,7 +19,7 @@ _BAKED_SIDE_MAX = 4096
 _OUTSIDE_SHARE = 0.02
 """If more of the map than this is exactly as high as its highest cell, that plateau is no data."""
 _SAMPLERS = ("height", "ground_colour", "edit_mask", "detail")
-_DETAIL_SIDE = 256
+_DETAIL_SIDE = 512
 _DETAIL_SEED = 33
 _OPENNESS_REACH = 28
 """Cells around a change whose openness may change with it (the largest radius in `bake_ground.frag`)."""
@@ -190,7 +190,7 @@ def _detail_texture(ctx: moderngl.Context) -> moderngl.Texture:
     side = _DETAIL_SIDE
     waves = np.hypot(np.fft.fftfreq(side)[:, None], np.fft.fftfreq(side)[None, :]) * side
     # Long waves would betray the tile; short ones carry less.
-    strength = np.where(waves > 5.0, 1.0 / np.maximum(waves, 1.0) ** 1.3, 0.0)
+    strength = np.where(waves > 9.0, 1.0 / np.maximum(waves, 1.0) ** 1.3, 0.0)
     white = np.fft.fft2(np.random.default_rng(_DETAIL_SEED).normal(size=(side, side)))
     grain = np.fft.ifft2(white * strength).real
     pixels = np.clip(127.5 + 42.0 * (grain - grain.mean()) / grain.std(), 0, 255).astype(np.uint8)

@@ -9,7 +9,7 @@ const vec3 LOWERED = vec3(0.16, 0.36, 0.85);
 
 vec3 ground_at(vec2 uv, float elevation) {
     vec4 baked = texture(ground_colour, uv);
-    vec3 colour = baked.rgb * (1.0 + baked.a * 0.36 * (texture(detail, uv * grid.xy / 20.0).r - 0.5));
+    vec3 colour = baked.rgb * (1.0 + baked.a * 0.32 * (texture(detail, uv * grid.xy / 48.0).r - 0.5));
     if (has_edits != 0) {
         float mark = texture(edit_mask, uv).r * (255.0 / 127.0) - 128.0 / 127.0;
         float light = 0.45 + 0.75 * dot(colour, vec3(0.299, 0.587, 0.114));
