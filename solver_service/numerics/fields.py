@@ -104,10 +104,19 @@ class FieldStore:
         return np.array(array.numpy()[GHOSTS:-GHOSTS, GHOSTS:-GHOSTS], order="C")
 
     def write(self, name: str, values: npt.ArrayLike) -> None:
-        """Set a raster without ghost cells; a state name sets both states."""
-        padded = np.zeros((self.nrows + 2 * GHOSTS, self.ncols + 2 * GHOSTS), np.float32)
-        padded[GHOSTS:-GHOSTS, GHOSTS:-GHOSTS] = values
-        self.write_padded(name, padded)
+        """Set a raster without ghost cells; a state name sets both states.
+
+        Ghost cells of the state are filled before every step; the other rasters need none.
+        """
+        inside = slice(GHOSTS, -GHOSTS)
+        targets = (name + "0", name + "1") if name in STATE_NAMES else (name,)
+        if self.device == "cpu":
+            for target in targets:
+                self.arrays[target].numpy()[inside, inside] = values
+        else:
+            padded = np.zeros((self.nrows + 2 * GHOSTS, self.ncols + 2 * GHOSTS), np.float32)
+            padded[inside, inside] = values
+            self.write_padded(name, padded)
 
     def write_padded(self, name: str, padded: FloatRaster) -> None:
         """Set a raster with its ghost cells; a state name sets both states."""

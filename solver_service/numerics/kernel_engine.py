@@ -91,7 +91,8 @@ class KernelEngine(Engine):
         else:
             if self._graph is None:
                 gc.collect()  # a collection on another thread would end the capture
-                with wp.ScopedCapture(device=self._device) as capture:
+                # Loading every module here would hand the native rows of CPUs to NVRTC; ours are loaded.
+                with wp.ScopedCapture(device=self._device, force_module_load=False) as capture:
                     wp.capture_while(self._go_on, self._take_steps)
                 self._graph = capture.graph
             wp.capture_launch(self._graph)
