@@ -21,7 +21,8 @@ from solver_service.errors import StoreError
 from solver_service.runs.worker_messages import FrameStored
 from solver_service.store import DataFolder, FrameWriter, RunDatabase
 
-QUEUE_FRAMES = 4
+QUEUE_BYTES = 128 * 1024 * 1024
+"""Frames that may wait for the disk; a full queue makes the solver wait."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,8 @@ class FramePublisher:
         self._epoch = epoch
         self._report = report
         self._trouble = trouble
-        self._slots = threading.Semaphore(QUEUE_FRAMES)
+        self._space = threading.Condition()
+        self._waiting_bytes = 0
         self._queue: queue.Queue[tuple[QuantisedFrame, float, float] | None] = queue.Queue()
         self._retry = threading.Event()
         self._closing = False
@@ -86,7 +88,9 @@ class FramePublisher:
             How long the caller waited [s].
         """
         begun = clock.perf_counter()
-        self._slots.acquire()
+        with self._space:
+            self._space.wait_for(lambda: self._waiting_bytes < QUEUE_BYTES)
+            self._waiting_bytes += frame.q.nbytes
         waited = clock.perf_counter() - begun
         self._queue.put((frame, begun, waited))
         return waited
@@ -110,7 +114,9 @@ class FramePublisher:
         database = RunDatabase(self._folder.database, self._epoch)
         while (job := self._queue.get()) is not None:
             self._store(*job, database)
-            self._slots.release()
+            with self._space:
+                self._waiting_bytes -= job[0].q.nbytes
+                self._space.notify()
             self._queue.task_done()
         self._queue.task_done()
         if self._writer is not None:

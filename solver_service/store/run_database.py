@@ -80,12 +80,8 @@ class RunDatabase:
         self._path = path
         self.epoch = epoch
         with _told(path):
-            self._db = sqlite3.connect(
-                path, timeout=BUSY_TIMEOUT_S, isolation_level=None, check_same_thread=False
-            )
+            self._db = self._connect()
             self._db.execute("PRAGMA journal_mode = WAL")
-            self._db.execute("PRAGMA synchronous = FULL")
-            self._db.execute("PRAGMA foreign_keys = ON")
             version = self._db.execute("PRAGMA user_version").fetchone()[0]
             if version == 0:
                 self._db.executescript(f"BEGIN;{_SCHEMA}PRAGMA user_version = {SCHEMA_VERSION};COMMIT;")
@@ -229,16 +225,29 @@ class RunDatabase:
     @contextmanager
     def _transaction(self, fenced: bool = True) -> Iterator[None]:
         with _told(self._path):
-            self._db.execute("BEGIN IMMEDIATE")
             try:
+                self._db.execute("BEGIN IMMEDIATE")
                 if fenced:
                     self._check_epoch()
                 yield
                 self._db.execute("COMMIT")
+            except sqlite3.OperationalError:
+                # after a failed write even ROLLBACK may fail, and the connection would keep its lock for ever
+                self._db.close()
+                self._db = self._connect()
+                raise
             except BaseException:
                 if self._db.in_transaction:
                     self._db.execute("ROLLBACK")
                 raise
+
+    def _connect(self) -> sqlite3.Connection:
+        connection = sqlite3.connect(
+            self._path, timeout=BUSY_TIMEOUT_S, isolation_level=None, check_same_thread=False
+        )
+        connection.execute("PRAGMA synchronous = FULL")
+        connection.execute("PRAGMA foreign_keys = ON")
+        return connection
 
     def _check_epoch(self) -> None:
         current = self._db.execute("SELECT value FROM service WHERE key = 'epoch'").fetchone()[0]

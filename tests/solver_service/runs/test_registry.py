@@ -75,7 +75,6 @@ def truth(service: Service) -> Run:
 def test_a_run_goes_from_starting_to_finished_with_every_frame(service: Service, truth: Run) -> None:
     assert [frame.index for frame in truth.frames] == list(range(LAST + 1))
     assert service.statuses(truth.run) == ["starting", "running", "finished"]
-    assert service.registry.reports.longest_publish_wait_s < 0.05
 
 
 def test_a_run_whose_worker_is_killed_fails_in_words_and_resumes_exactly(

@@ -21,10 +21,15 @@ def opened(service: ServiceProcess, token: str | None = None, **options: Any) ->
 def closed(connection: ClientConnection) -> tuple[list[protocol.ServerMessage], int, str]:
     """What came before the close, its code and its reason."""
     messages: list[protocol.ServerMessage] = []
-    with pytest.raises(ConnectionClosed) as end:
+
+    def receive_all() -> None:
         while True:
             data = connection.recv(timeout=15.0)
-            messages.append(protocol.unpack_server(data if isinstance(data, bytes) else data.encode()))
+            assert isinstance(data, bytes)
+            messages.append(protocol.unpack_server(data))
+
+    with pytest.raises(ConnectionClosed) as end:
+        receive_all()
     close = end.value.rcvd
     assert close is not None
     return messages, close.code, close.reason
