@@ -19,6 +19,8 @@ from viewer.world import EditDocument, Heightfield, Rect, WaterTimeline
 __all__ = ["ShownRun"]
 
 _SERIAL = itertools.count(1)
+FOREIGN = -2
+"""Revision of a ground that no preview of this run has made."""
 
 
 class ShownRun:
@@ -47,7 +49,7 @@ class ShownRun:
         self.info = info
         self.grid = info.grid.geometry
         self._serial = next(_SERIAL)
-        self._drawn_revision = 0 if heightfield is None else -1
+        self._drawn_revision = 0 if heightfield is None else FOREIGN
         self.heightfield = Heightfield(self.grid, z_b_base) if heightfield is None else heightfield
         self.document = EditDocument(self.grid, z_b_base)
         self.timeline = WaterTimeline(info.output_interval)
@@ -125,8 +127,9 @@ class ShownRun:
         preview = self.document.preview()
         if preview.revision == self._drawn_revision:
             return False
-        is_foreign, self._drawn_revision = self._drawn_revision < 0, preview.revision
-        dirty = _difference(self.heightfield.z_b, preview.z_b) if is_foreign else preview.dirty
+        # The preview knows what it changed since the one before; if that one was never drawn, only a look tells.
+        is_next, self._drawn_revision = preview.revision == self._drawn_revision + 1, preview.revision
+        dirty = preview.dirty if is_next else _difference(self.heightfield.z_b, preview.z_b)
         if dirty is None:
             return False
         self.heightfield.set(preview.z_b, dirty)

@@ -23,7 +23,7 @@ class DepthPlot(QWidget):
         self.plot = pg.PlotWidget(background=None)
         self.plot.setAccessibleName("Depth over time at the clicked point")
         self.plot.setMinimumHeight(120)
-        self.plot.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Expanding)
+        self.plot.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
         self.plot.setMenuEnabled(False)
         self.plot.setMouseEnabled(False, False)
         self.plot.hideButtons()

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import (
     QLabel,
     QListWidget,
     QPushButton,
+    QSizePolicy,
     QToolButton,
     QVBoxLayout,
     QWidget,
@@ -63,7 +64,8 @@ class EditPanel(QWidget):
         self.edits = QListWidget()
         self.edits.setAccessibleName("Edits")
         self.edits.setToolTip("Edits of the shown run; a new one counts from the next Recalculate on")
-        self.edits.setMinimumHeight(70)
+        self.edits.setMinimumHeight(60)
+        self.edits.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
         self.edits.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.edits.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.undo = self._action("Undo edit", QKeySequence.StandardKey.Undo, Undo())

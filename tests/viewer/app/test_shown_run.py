@@ -72,3 +72,19 @@ def test_what_is_computed_counts_even_before_it_has_come(loader: FrameLoader) ->
 
     assert shown.computed_until == 110.0
     loader.close()
+
+
+def test_ground_that_was_previewed_but_never_drawn_is_put_right(loader: FrameLoader) -> None:
+    shown = ShownRun(info("a"), valley(), loader)
+    for x in (1300.0, 1500.0, 1700.0):
+        shown.document.set_draft(
+            msgspec.structs.replace(edit("draft"), vertices=((1100.0, 2100.0), (x, 2600.0)))
+        )
+        if x != 1500.0:
+            shown.refresh_ground()
+        else:
+            shown.overlay_revision()  # a picture looks at the preview between two refreshes
+    expected = shown.document.preview().z_b
+
+    np.testing.assert_array_equal(shown.heightfield.z_b, expected)
+    loader.close()
