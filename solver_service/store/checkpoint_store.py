@@ -25,7 +25,7 @@ from solver_service.store.data_folder import DataFolder, fsync_file, fsync_folde
 from solver_service.store.records import CheckpointRecord
 from solver_service.store.run_database import RunDatabase
 
-KEEP = 2
+KEEP = 3
 CHUNK_CELLS = 4 * 1024 * 1024
 
 
