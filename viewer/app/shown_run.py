@@ -127,7 +127,7 @@ class ShownRun:
         preview = self.document.preview()
         if preview.revision == self._drawn_revision:
             return False
-        # The preview knows what it changed since the one before; if that one was never drawn, only a look tells.
+        # A preview knows what changed since the one before; if that was never drawn, only a look tells.
         is_next, self._drawn_revision = preview.revision == self._drawn_revision + 1, preview.revision
         dirty = preview.dirty if is_next else _difference(self.heightfield.z_b, preview.z_b)
         if dirty is None:

@@ -76,7 +76,7 @@ def test_what_is_computed_counts_even_before_it_has_come(loader: FrameLoader) ->
 
 def test_ground_that_was_previewed_but_never_drawn_is_put_right(loader: FrameLoader) -> None:
     shown = ShownRun(info("a"), valley(), loader)
-    for x in (1300.0, 1500.0, 1700.0):
+    for x in (1700.0, 1500.0, 1300.0):
         shown.document.set_draft(
             msgspec.structs.replace(edit("draft"), vertices=((1100.0, 2100.0), (x, 2600.0)))
         )
