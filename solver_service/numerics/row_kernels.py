@@ -25,6 +25,9 @@ from solver_service.numerics.warp_modules import ROWS_MODULE
 CHUNK_COLS = 1024
 """Widest chunk [cells]: its rows stay in the cache next to the core."""
 
+NARROW_COLS = 256
+"""Chunks up to this wide fetch the rows ahead themselves [cells]."""
+
 SCRATCH_ROWS = 44
 """Rows of scratch memory per thread."""
 
@@ -50,6 +53,11 @@ _SWEEP = r"""
     float* __restrict__ waves = scratch + (size_t)38 * span;
     float* __restrict__ speeds = scratch + (size_t)39 * span;
     for (int j = 0; j < count; ++j) waves[j] = 0.0f;
+    const bool narrow = count <= NARROW;
+    const float* const written[] = {
+        (const float*)f.h_out.data, (const float*)f.u_out.data, (const float*)f.v_out.data,
+        (const float*)f.h_max.data, (const float*)f.h_max_time.data, (const float*)f.speed_max.data,
+        (const float*)f.discharge_max.data, (const float*)f.hazard_max.data, (const float*)f.arrival.data};
 
     for (int i = row0 - 1; i <= row1; ++i) {
         float* __restrict__ B = scratch + (size_t)((i & 1) * 13) * span;
@@ -62,6 +70,14 @@ _SWEEP = r"""
         const float* __restrict__ hn = hc + pitch; const float* __restrict__ un = uc + pitch;
         const float* __restrict__ vn = vc + pitch; const float* __restrict__ zn = zc + pitch;
         const float* __restrict__ kc = drag + at;
+        // Rows of a narrow chunk lie on pages of their own: the hardware does not see the next one coming.
+        for (int j = 0; j < count + 2 && narrow && i < s.nrows + 2; j += 16) {
+            const size_t ahead = 2 * (size_t)pitch + j;
+            __builtin_prefetch(hc + ahead); __builtin_prefetch(uc + ahead);
+            __builtin_prefetch(vc + ahead); __builtin_prefetch(zc + ahead);
+            __builtin_prefetch(kc + pitch + j);
+            for (const float* field : written) __builtin_prefetch(field + at + j, 1);
+        }
         #pragma clang loop vectorize(assume_safety) vectorize_width(16)
         for (int j = 0; j < count + 2; ++j) {
             auto p = PREDICT(hc[j], uc[j], vc[j], zc[j], hc[j-1], uc[j-1], vc[j-1], zc[j-1],
@@ -137,6 +153,7 @@ def _with_names(snippet: str) -> str:
     names = {"PREDICT": predict, "FACE": face_flux, "UPDATE": update_cell, "WIDEN": widen_maxima}
     for word, function in names.items():
         snippet = snippet.replace(word + "(", function.native_func + "(")
+    snippet = snippet.replace("NARROW", str(NARROW_COLS))
     return snippet.replace("chunks[", "((const int*)chunk_array.data)[")
 
 

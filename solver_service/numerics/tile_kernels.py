@@ -143,7 +143,9 @@ def list_active_tiles(
     near = near | (quadrants_at(quadrants, r + 1, c - 1, tile_rows, tile_cols) & 2)
     near = near | (quadrants_at(quadrants, r + 1, c + 1, tile_rows, tile_cols) & 1)
     was_active = active[tile]
-    if is_first[1] == 1 or (near == 0 and was_active == 1):
+    if is_first[1] == 1:
+        tile_wave[tile] = 0.0
+    if (is_first[1] == 1 and quadrants[tile] != 0) or (near == 0 and was_active == 1):
         row0 = r * SIDE + 2
         col0 = c * SIDE + 2
         wave = float(0.0)
