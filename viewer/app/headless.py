@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -22,6 +23,8 @@ IDLE_S = 0.02
 PAINT_PERIOD_S = 0.4
 """While waiting, a picture is drawn at most this often: the processor belongs to the solver."""
 SETTLE_TIMEOUT_S = 30.0
+SIGN_OF_LIFE_S = 15.0
+"""Who waits longer than this is told what for."""
 
 
 class HeadlessError(ViewerError):
@@ -85,9 +88,13 @@ class HeadlessSession:
         Raises:
             HeadlessError: it did not hold in time.
         """
-        end = time.monotonic() + timeout_s
+        begun = told = time.monotonic()
+        end = begun + timeout_s
         while True:
             now = time.monotonic()
+            if now - told >= SIGN_OF_LIFE_S:
+                told = now
+                print(f"fev-viewer: waiting for {what} ({now - begun:.0f} s)", file=sys.stderr, flush=True)
             self._is_stale |= self.app.advance(now)
             if self._is_stale and now - self._painted_at >= paint_period_s:
                 self.paint()
