@@ -7,6 +7,7 @@ output time becomes a frame. Frames that are stored already are computed again b
 
 from __future__ import annotations
 
+import gc
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -219,6 +220,7 @@ class RunLoop:
         self._keeper.remember(run, state)
         course.remember_at = clock.perf_counter() + REMEMBER_INTERVAL_S
         if due:
+            gc.collect()
             self._keeper.checkpoint(run, state)
             course.checkpoint_at = clock.perf_counter() + self._settings.checkpoint_interval_s
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import itertools
+import logging
 import threading
 from collections.abc import Callable
 from multiprocessing.connection import Connection
@@ -20,9 +21,12 @@ from solver_service.runs.worker_messages import (
     Report,
     SaveState,
     StateSaved,
+    Unfit,
     WorkerSettings,
 )
 from solver_service.runs.worker_process import start_worker
+
+LOG = logging.getLogger(__name__)
 
 QUIT_TIMEOUT_S = 3.0
 _numbers = itertools.count(1)
@@ -54,6 +58,7 @@ class Worker:
         self.pid: int | None = None
         self._on_report = on_report
         self._on_death = on_death
+        self._unfit = ""
         self._ready = asyncio.Event()
         self._dead = asyncio.Event()
         self._loaded: asyncio.Future[CaseLoaded] | None = None
@@ -92,7 +97,7 @@ class Worker:
         for wait in waits:
             wait.cancel()
         if self._dead.is_set():
-            raise RunError("a worker process ended while it was starting; `fev-solver doctor` says more")
+            raise RunError(self._unfit or "a worker process ended while it was starting")
 
     def send(self, command: Command) -> None:
         """Tell it something; a dead worker hears nothing, and its death is told by `on_death`."""
@@ -154,6 +159,9 @@ class Worker:
             case Ready():
                 self.devices = report.devices
                 self._ready.set()
+            case Unfit():
+                self._unfit = report.message
+                LOG.error("worker %d: %s", self.number, report.message)
             case CaseLoaded():
                 if self._loaded is not None and not self._loaded.done():
                     self._loaded.set_result(report)

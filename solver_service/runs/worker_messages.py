@@ -102,6 +102,13 @@ class Ready:
 
 
 @dataclass(frozen=True)
+class Unfit:
+    """The worker cannot compute here and ends."""
+
+    message: str
+
+
+@dataclass(frozen=True)
 class CaseLoaded:
     """The case is in memory.
 
@@ -211,6 +218,7 @@ class Remark:
 
 Report = (
     Ready
+    | Unfit
     | CaseLoaded
     | CaseRefused
     | Running

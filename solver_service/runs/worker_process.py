@@ -10,7 +10,8 @@ import signal
 import threading
 from multiprocessing.connection import Connection
 
-from solver_service.runs.worker_messages import Ready, Report, WorkerSettings
+from solver_service.errors import ServiceError
+from solver_service.runs.worker_messages import Ready, Report, Unfit, WorkerSettings
 
 LOG = logging.getLogger(__name__)
 
@@ -37,8 +38,13 @@ def worker_main(settings: WorkerSettings, connection: Connection) -> None:
     from solver_service.runs.inbox import Inbox
     from solver_service.runs.run_loop import RunLoop
 
-    warm_kernels(settings.device)
+    try:
+        warm_kernels(settings.device)
+    except ServiceError as error:
+        report(Unfit(str(error)))
+        return
     gc.freeze()
+    gc.disable()  # a collection on another thread can break a CUDA graph capture; the solver thread collects
     loop = RunLoop(settings, Inbox(connection), report)
     report(Ready(os.getpid(), tuple(device_names())))
     loop.serve()
