@@ -7,8 +7,6 @@ that the threads can be dealt equal work.
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 import numpy.typing as npt
 
@@ -47,7 +45,7 @@ def cut_chunks(
     Returns:
         First row, one past the last row, first column, one past the last column; [chunks, 4].
     """
-    highest = max(1, -(-mask.shape[0] // (4 * threads)))
+    highest = max(1, -(-mask.shape[0] // (8 * threads)))
     chunks: list[list[int]] = []
     growing: dict[tuple[int, int], list[int]] = {}
     spans = _spans(mask, ncols, widest)
@@ -65,15 +63,15 @@ def cut_chunks(
     return np.array(sorted(chunks), np.int32).reshape(-1, 4)
 
 
-def deal_chunks(chunks: npt.NDArray[np.int32], threads: int) -> list[tuple[int, int]]:
-    """Consecutive ranges of chunks [first, last) with about equal numbers of cells, none empty."""
-    cells = (chunks[:, 1] - chunks[:, 0]) * (chunks[:, 3] - chunks[:, 2])
-    reached = np.cumsum(cells)
-    if reached.size == 0:
-        return []
-    bounds = [
-        0,
-        *np.searchsorted(reached, reached[-1] * np.arange(1, threads) / threads).tolist(),
-        len(chunks),
-    ]
-    return [(first, last) for first, last in pairwise(bounds) if last > first]
+def deal_chunks(chunks: npt.NDArray[np.int32], threads: int) -> npt.NDArray[np.int32]:
+    """First chunk of each thread's share, and one past the last; shares have about equal numbers of cells.
+
+    Returns:
+        [threads + 1], never falling.
+    """
+    reached = np.cumsum((chunks[:, 1] - chunks[:, 0]) * (chunks[:, 3] - chunks[:, 2]))
+    bounds = np.full(threads + 1, len(chunks), np.int32)
+    bounds[0] = 0
+    if reached.size:
+        bounds[1:-1] = np.searchsorted(reached, reached[-1] * np.arange(1, threads) / threads)
+    return bounds

@@ -1,8 +1,8 @@
 """Steps by SIMD row loops on the threads of a CPU.
 
 The active tiles are cut into chunks, the chunks dealt to the threads in equal shares, and each thread
-sweeps its own with one native call that holds no Python lock. The clock stays on the host. The result does
-not depend on how the tiles are cut or dealt.
+sweeps its own, then what slower threads have left, in one native call that holds no Python lock. The clock
+stays on the host. The result does not depend on how the tiles are cut or dealt.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ LOG = logging.getLogger(__name__)
 
 SCRATCH_PITCH = CHUNK_COLS + 16
 
-FIRST_PARAMETER, DT_PARAMETER, TIME_PARAMETER = 3, 7, 8
-"""Places of `first`, `dt` and `time` among the arguments of `step_chunks`."""
+DT_PARAMETER, TIME_PARAMETER = 7, 8
+"""Places of `dt` and `time` among the arguments of `step_chunks`."""
 
 
 @functools.cache
@@ -74,7 +74,9 @@ class RowEngine(Engine):
         self._mask: npt.NDArray[np.bool_] | None = None
         self._ghost_count = 0
         self._rest_wave = self._waking_wave = 0.0
-        self._shares: list[tuple[int, int]] = []
+        self._shares = wp.zeros(threads + 1, dtype=wp.int32, device="cpu")
+        self._taken = wp.zeros(threads, dtype=wp.int32, device="cpu")
+        self._taken_view, self._share_view = self._taken.numpy(), self._shares.numpy()
         self._chunk_waves = np.zeros(0, np.float32)
         self._refreshes = [parts.tiles.refresh(fields, record=True) for fields in store.fields]
         self._ghost_launches = [self._record_ghosts(parity) for parity in (0, 1)]
@@ -105,7 +107,8 @@ class RowEngine(Engine):
         parity = store.parity
         if self._ghost_count:
             self._ghost_launches[parity].launch()
-        sweeps = self._sweeps[parity][: len(self._shares)]
+        sweeps = self._sweeps[parity][: len(self._chunk_waves)]
+        self._taken_view[:] = self._share_view[:-1]
         for sweep in sweeps:
             sweep.set_param_at_index(DT_PARAMETER, dt)
             sweep.set_param_at_index(TIME_PARAMETER, after)
@@ -139,7 +142,7 @@ class RowEngine(Engine):
             return
         self._mask = mask
         chunks = cut_chunks(mask, store.nrows, store.ncols, self._threads, CHUNK_COLS)
-        self._shares = deal_chunks(chunks, self._threads)
+        self._share_view[:] = deal_chunks(chunks, self._threads)
         self._chunks.numpy()[: chunks.size] = chunks.ravel()
         self._chunk_waves = self._waves.numpy()[: len(chunks)]
         ghosts = self._all_ghosts[mask.ravel()[self._ghost_tiles]]
@@ -147,9 +150,6 @@ class RowEngine(Engine):
         self._ghosts.numpy()[: ghosts.size] = ghosts
         for parity in (0, 1):
             self._ghost_launches[parity].set_dim(max(1, ghosts.size))
-            for sweep, (first, last) in zip(self._sweeps[parity], self._shares, strict=False):
-                sweep.set_param_at_index(FIRST_PARAMETER, first)
-                sweep.set_dim(last - first)
 
     def _record_sweep(self, parity: int, thread: int) -> wp.Launch:
         return wp.launch(
@@ -159,14 +159,15 @@ class RowEngine(Engine):
                 self.parts.store.fields[parity],
                 self.parts.scheme,
                 self._chunks,
-                0,
+                thread,
                 self._scratch,
                 thread * self._scratch_size,
                 SCRATCH_PITCH,
                 0.0,
                 0.0,
+                self._shares,
             ],
-            outputs=[self._waves],
+            outputs=[self._taken, self._waves],
             device="cpu",
             record_cmd=True,
         )

@@ -174,35 +174,59 @@ def sweep(
     ...
 
 
+_TAKE = r"""
+    const int threads = shares.shape[0] - 1;
+    const int* bounds = (const int*)shares.data;
+    int* next = (int*)taken.data;
+    for (int k = 0; k < threads; ++k) {
+        const int owner = (thread + k) % threads;
+        if (__atomic_load_n(next + owner, __ATOMIC_RELAXED) >= bounds[owner + 1]) continue;
+        const int chunk = __atomic_fetch_add(next + owner, 1, __ATOMIC_RELAXED);
+        if (chunk < bounds[owner + 1]) return chunk;
+    }
+    return -1;
+"""
+
+
+@wp.func_native(_TAKE)
+def take_chunk(shares: wp.array(dtype=wp.int32), taken: wp.array(dtype=wp.int32), thread: int) -> int:
+    """Next chunk of the thread's own share, then of the others'; -1 when all are taken."""
+    ...
+
+
 @wp.kernel(module=ROWS_MODULE)
 def step_chunks(
     f: Fields,
     s: Scheme,
     chunk_array: wp.array(dtype=wp.int32),
-    first: int,
+    thread: int,
     scratch_array: wp.array(dtype=wp.float32),
     scratch_offset: int,
     scratch_pitch: int,
     dt: float,
     time: float,
+    shares: wp.array(dtype=wp.int32),
     # outputs
+    taken: wp.array(dtype=wp.int32),
     chunk_waves: wp.array(dtype=wp.float32),
 ):
-    """Step chunks first, first + 1, ... one after the other.
+    """Step chunks until all are taken: those of the thread's own share, then what slower threads have left.
 
     Args:
         f: rasters.
         s: scheme.
         chunk_array: first row, one past the last, first column, one past the last of each chunk.
-        first: number of the first chunk.
+        thread: number of the thread.
         scratch_array: scratch memory of all threads.
         scratch_offset: where this thread's begins.
         scratch_pitch: length of a scratch row.
         dt: time step [s].
         time: time after the step [s].
+        shares: [threads + 1], first chunk of each thread's share.
+        taken: [threads], next chunk of each share.
         chunk_waves: largest wave speed of each chunk [m/s].
     """
-    if first < 0:  # never: tells Warp to generate the functions that the native code calls
+    if thread < 0:  # never: tells Warp to generate the functions that the native code calls
         a = predict(
             dt,
             dt,
@@ -238,15 +262,7 @@ def step_chunks(
         )
         d = widen_maxima(dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt)
         chunk_waves[0] = a[0] + b[0] + c[0] + d[0]
-    sweep(
-        f,
-        s,
-        chunk_array,
-        first + wp.tid(),
-        scratch_array,
-        scratch_offset,
-        scratch_pitch,
-        dt,
-        time,
-        chunk_waves,
-    )
+    chunk = take_chunk(shares, taken, thread)
+    while chunk >= 0:
+        sweep(f, s, chunk_array, chunk, scratch_array, scratch_offset, scratch_pitch, dt, time, chunk_waves)
+        chunk = take_chunk(shares, taken, thread)
