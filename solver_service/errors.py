@@ -40,7 +40,9 @@ class SolverBlowUp(ServiceError):
     """
 
     def __init__(self, time: float, row: int, col: int, value: str, cause: str) -> None:
-        super().__init__(f"The run stopped at {time:.3f} s in cell (row {row}, column {col}): {value}; {cause}.")
+        super().__init__(
+            f"The run stopped at {time:.3f} s in cell (row {row}, column {col}): {value}; {cause}."
+        )
         self.time = time
         self.row = row
         self.col = col
