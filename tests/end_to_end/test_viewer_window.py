@@ -9,6 +9,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
+from tests.viewer.gl_thread import let_go_of_egl
 from viewer.app.local_service import LocalService
 from viewer.app.viewer_app import ViewerApp
 from viewer.app.window import make_window
@@ -33,6 +34,7 @@ def picture(window: MainWindow) -> np.ndarray:
 def test_start_watch_draw_recalculate_and_see_the_change(
     service: LocalService, case: str, qtbot: QtBot
 ) -> None:
+    let_go_of_egl()
     connection = ConnectionThread(service.url, service.token)
     app = ViewerApp(connection, FrameLoader())
     connection.start()

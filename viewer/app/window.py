@@ -70,12 +70,16 @@ def run_window(app: ViewerApp, closed: Callable[[], None]) -> int:
     """
     application = prepare_window()
     window = make_window(app, closed)
-    signal.signal(signal.SIGINT, lambda *_: window.close())
+    interrupted = signal.signal(signal.SIGINT, lambda *_: window.close())
     wake = QTimer()  # lets Python look at signals while Qt waits
     wake.timeout.connect(lambda: None)
     wake.start(200)
     window.show()
-    status = application.exec()
+    try:
+        status = application.exec()
+    finally:
+        signal.signal(signal.SIGINT, interrupted)
+        wake.stop()
     if window.failure is not None:
         print(f"fev-viewer: {window.failure}", file=sys.stderr)
         return EXIT_NO_PICTURE

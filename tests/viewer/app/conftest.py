@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 
+import moderngl
 import pytest
 
 from tests.viewer.tiny_service import TOKEN, TinyService
@@ -10,6 +11,7 @@ from viewer.app.shown_run import ShownRun
 from viewer.app.viewer_app import ViewerApp
 from viewer.commands import Command, StartRun
 from viewer.net import BackOff, ConnectionThread, FrameLoader
+from viewer.render import create_headless_context
 
 
 class Flight:
@@ -50,6 +52,14 @@ class Flight:
     def close(self) -> None:
         self.app.close()
         self.service.close()
+
+
+@pytest.fixture(scope="module")
+def ctx() -> Iterator[moderngl.Context]:
+    """A context of this module's own: the one of the render tests must stay current for them."""
+    context = create_headless_context()
+    yield context
+    context.release()
 
 
 @pytest.fixture

@@ -1,12 +1,22 @@
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
-from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
-from tests.viewer.tiny_service import TOKEN, TinyService
+from tests.viewer.gl_thread import let_go_of_egl
 from viewer.app.viewer_app import ViewerApp
-from viewer.app.window import make_window, prepare_window, run_window
+from viewer.app.window import make_window, prepare_window
 from viewer.errors import ContextError
 from viewer.net import ConnectionThread, FrameLoader
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture(autouse=True)
+def _no_foreign_context_is_current() -> None:
+    let_go_of_egl()
 
 
 def test_without_a_display_a_sentence_names_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -16,25 +26,33 @@ def test_without_a_display_a_sentence_names_the_way_out(monkeypatch: pytest.Monk
         prepare_window()
 
 
-def test_the_window_runs_until_it_is_closed_and_closes_what_is_behind_it(qapp: QApplication) -> None:
+PROGRAM = """
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QApplication
+from tests.viewer.tiny_service import TOKEN, TinyService
+from viewer.app.viewer_app import ViewerApp
+from viewer.app.window import prepare_window, run_window
+from viewer.net import ConnectionThread, FrameLoader
 
-    service = TinyService()
-    connection = ConnectionThread(service.url, TOKEN)
-    app = ViewerApp(connection, FrameLoader())
-    connection.start()
-    closed: list[bool] = []
+service = TinyService()
+connection = ConnectionThread(service.url, TOKEN)
+app = ViewerApp(connection, FrameLoader())
+connection.start()
+prepare_window()
+QTimer.singleShot(1500, lambda: [window.close() for window in QApplication.topLevelWidgets()])
+status = run_window(app, app.close)
+print(status, connection.state.phase)
+service.close()
+"""
 
-    def close_all() -> None:
-        for window in QApplication.topLevelWidgets():
-            window.close()
-        qapp.quit()
 
-    QTimer.singleShot(1500, close_all)
-    status = run_window(app, lambda: (closed.append(True), app.close()))  # type: ignore[func-returns-value]
-    service.close()
+def test_the_window_runs_until_it_is_closed_and_closes_what_is_behind_it(display: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM], cwd=ROOT, capture_output=True, text=True, timeout=60
+    )
 
-    assert status == 0
-    assert closed == [True]
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["0", "closed"]
 
 
 def test_the_window_is_made_without_being_shown(qapp: QApplication) -> None:

@@ -7,6 +7,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
+from tests.viewer.gl_thread import let_go_of_egl
 from tests.viewer.tiny_service import TOKEN, TinyService
 from viewer.app.viewer_app import ViewerApp
 from viewer.app.window import make_window
@@ -62,6 +63,11 @@ class OpenWindow:
         self.bot.mouseClick(self.window.scene, Qt.MouseButton.LeftButton, pos=self.pixel_of(x, y))
 
 
+@pytest.fixture(autouse=True)
+def _no_foreign_context_is_current() -> None:
+    let_go_of_egl()
+
+
 @pytest.fixture
 def record() -> Recorder:
     return Recorder()
@@ -78,8 +84,12 @@ def opened(qtbot: QtBot) -> Iterator[OpenWindow]:
     window.resize(1000, 640)
     window.show()
     qtbot.waitExposed(window)
-    window.activateWindow()
-    qtbot.waitUntil(window.isActiveWindow)
+
+    def is_active() -> bool:
+        window.activateWindow()
+        return window.isActiveWindow()
+
+    qtbot.waitUntil(is_active)
     made = OpenWindow(window, app, service, qtbot)
     made.until(lambda: app.shown is not None and len(app.shown.timeline) >= 20)
     app.dispatch(Pause())
