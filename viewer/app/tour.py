@@ -1,8 +1,8 @@
 """The tour of the headless demo: a flood while it is computed, a levee in its way, the changed flood.
 
 The tour does what a user would do, with the same commands: start, watch, go back, draw a line across the
-path of
-the water ahead of the front, recalculate from there, and look at the same place at the same time again.
+path of the water ahead of the front, recalculate from there, and look at the same place at the same time
+again.
 """
 
 from __future__ import annotations
@@ -129,39 +129,49 @@ def fly_tour(session: HeadlessSession, started: float, settings: TourSettings | 
 
 
 def _watch(session: HeadlessSession, settings: TourSettings) -> None:
-    """Follow the newest frame and take pictures of the front at several times."""
+    """Take pictures of the front while the flood is computed.
+
+    The pictures are spread evenly over the run. Where the solver is too slow for that, each is taken when its
+    share of the watching time is over, of the newest frame.
+    """
     app = session.app
     session.picture("01_overview.png")
     begun = time.monotonic()
     for number in range(settings.watch_pictures):
-        share = (number + 1) / settings.watch_pictures
+        share = (number + 1) / (settings.watch_pictures + 1)
         frames = math.ceil(share * settings.watch_least_frames)
         due = begun + share * settings.watch_s
+        wanted = share * _shown(app).info.duration
 
-        def is_due(frames: int = frames, due: float = due) -> bool:
+        def is_due(frames: int = frames, due: float = due, wanted: float = wanted) -> bool:
             shown = _shown(app)
+            count = len(shown.timeline)
             has_ended = shown.info.status in ("finished", "stopped", "failed")
-            is_whole = has_ended and len(shown.timeline) >= shown.info.frame_count
-            return is_whole or (time.monotonic() >= due and len(shown.timeline) >= frames)
+            if (has_ended and count >= shown.info.frame_count) or (
+                time.monotonic() >= due and count >= frames
+            ):
+                return True
+            return shown.timeline.last_time >= wanted and count >= frames
 
         session.pump(is_due, f"{frames} computed frames", settings.start_timeout_s)
-        _fly_to_front(session, seconds=0.0)
+        app.carry_out(Seek(min(wanted, _shown(app).timeline.last_time)))
+        _fly_to_front(session)
         session.picture(f"{number + 2:02d}_front_{_stamp(app.clock.time)}.png")
 
 
-def _fly_to_front(session: HeadlessSession, seconds: float) -> None:
+def _fly_to_front(session: HeadlessSession) -> None:
     app = session.app
     shown = _shown(app)
-    newest = shown.timeline.index_before(shown.timeline.last_time)
-    front = _front_at(session, newest)
+    index = shown.timeline.index_before(app.clock.time)
+    front = _front_at(session, index)
     if front is None:
         return
-    earlier = _front_at(session, max(newest // 2, 1))
+    earlier = _front_at(session, max(index // 2, 1))
     bearing = 0.0
     if earlier is not None and (front.row, front.col) != (earlier.row, earlier.col):
         bearing = math.degrees(math.atan2(front.col - earlier.col, front.row - earlier.row))
     x, y = shown.grid.center(front.row, front.col)
-    app.carry_out(FlyTo(x, y, _distance(shown), (bearing + 150.0) % 360.0, 32.0, seconds))
+    app.carry_out(FlyTo(x, y, _distance(shown), (bearing + 150.0) % 360.0, 32.0, 0.0))
 
 
 def _plan(session: HeadlessSession) -> tuple[LeveeLine, float, float, tuple[float, float]]:
