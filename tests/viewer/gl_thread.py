@@ -1,4 +1,4 @@
-"""One thread, two worlds: an off-screen context still current keeps Qt from making its own current."""
+"""An off-screen context that is still current keeps Qt from making its own current in the same thread."""
 
 import contextlib
 import ctypes

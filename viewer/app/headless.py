@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from viewer.app.picture_quality import still
 from viewer.app.script import ScriptStep
 from viewer.app.stage import Stage, save_png
 from viewer.app.viewer_app import ViewerApp
 from viewer.errors import ViewerError
-from viewer.render import create_headless_context
+from viewer.render import RenderOptions, create_headless_context
 
 __all__ = ["PICTURE_SIZE", "HeadlessError", "HeadlessSession"]
 
@@ -106,9 +107,9 @@ class HeadlessSession:
             self._watch()
             self.app.desk.connection.mailbox.wait(IDLE_S)
 
-    def paint(self) -> None:
-        """Draw the picture as it is now."""
-        self.stage.paint_to(self._target, self.size)
+    def paint(self, quality: Callable[[RenderOptions], RenderOptions] | None = None) -> None:
+        """Draw the picture as it is now; `quality` as for `Stage.paint_to`."""
+        self.stage.paint_to(self._target, self.size, quality)
         self._painted_at = time.monotonic()
         self._is_stale = False
         if self.first_picture_at is None and self.app.feed.pair is not None:
@@ -122,7 +123,7 @@ class HeadlessSession:
     def picture(self, name: str) -> npt.NDArray[np.uint8]:
         """Wait until water and camera stand, draw, write the picture `name` and return it."""
         self.pump(lambda: self.app.is_settled, "the picture to settle", SETTLE_TIMEOUT_S, float("inf"))
-        self.paint()
+        self.paint(still)
         pixels = self.pixels()
         save_png(self.folder / name, pixels)
         self.pictures.append(name)

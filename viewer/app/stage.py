@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
@@ -11,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from viewer.render import FrameInputs, FrameStats, Renderer, check_context
+from viewer.app.picture_quality import interactive, is_software
+from viewer.render import FrameInputs, FrameStats, Renderer, RenderOptions, check_context
 from viewer.world import Heightfield
 
 __all__ = ["Scene", "Stage", "save_png"]
@@ -84,11 +86,23 @@ class Stage:
         self._context = check_context(self._make_context())
 
     def paint(self, framebuffer: int, width: int, height: int) -> None:
-        """Draw the scene into framebuffer object number `framebuffer`."""
-        self.paint_to(self.context.detect_framebuffer(framebuffer), (width, height))
+        """Draw the scene of a window into framebuffer object number `framebuffer`."""
+        quality = interactive if is_software(self.context) else None
+        self.paint_to(self.context.detect_framebuffer(framebuffer), (width, height), quality)
 
-    def paint_to(self, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
-        """Draw the scene into `target` of width and height `size` [pixels]."""
+    def paint_to(
+        self,
+        target: moderngl.Framebuffer,
+        size: tuple[int, int],
+        quality: Callable[[RenderOptions], RenderOptions] | None = None,
+    ) -> None:
+        """Draw the scene.
+
+        Args:
+            target: where to draw.
+            size: its width and height [pixels].
+            quality: makes of the user's options those of this picture.
+        """
         inputs = self._scene.frame_inputs()
         heightfield = self._scene.heightfield
         if inputs is None or heightfield is None:
@@ -101,6 +115,8 @@ class Stage:
                 self._renderer.release()
             self._renderer = Renderer(self.context, heightfield)
             self._heightfield = heightfield
+        if quality is not None:
+            inputs = dataclasses.replace(inputs, options=quality(inputs.options))
         self.stats = self._renderer.draw(target, size, inputs)
         self.pictures += 1
         self._scene.note_painted(size)
