@@ -14,7 +14,7 @@ _SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "swiftshader", "softwar
 
 SOFTWARE_TAU_PX = 3.0
 """Least screen error of the ground on a software renderer [pixels]."""
-SOFTWARE_SPACING_PX = 5.0
+SOFTWARE_SPACING_PX = 2.0
 """Least spacing of water vertices on a software renderer [pixels]."""
 SOFTWARE_SCALE = 0.75
 STILL_SCALE = 2.0
