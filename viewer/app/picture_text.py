@@ -12,7 +12,7 @@ from viewer.render import DrapedLine, EditOverlay, HudText, LineStyle
 from viewer.view_status import EditRow, PointReadout, time_text
 from viewer.world import ProbeReading
 
-__all__ = ["edit_overlay", "edit_rows", "hud_text", "readout"]
+__all__ = ["edit_overlay", "edit_rows", "hud_text", "loss_notice", "readout"]
 
 
 def hud_text(
@@ -40,6 +40,17 @@ def hud_text(
         is_hypothetical=info.hypothetical,
         notice=notice,
     )
+
+
+def loss_notice(connection: str, data_age: float | None) -> str:
+    """Return what the picture says while the service is gone.
+
+    Args:
+        connection: what the connection does, with the countdown to the next attempt.
+        data_age: time since the service was last heard [s]; None when it never was.
+    """
+    age = "" if data_age is None else f"\nThis picture is {time_text(data_age)} old."
+    return f"{connection}{age}"
 
 
 def edit_overlay(shown: ShownRun, drawing: EditDrawing) -> EditOverlay | None:

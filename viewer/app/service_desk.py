@@ -55,6 +55,7 @@ class ServiceDesk:
         self.devices: tuple[str, ...] = ()
         self._listener = listener
         self._link = ServiceLink(connection, listener.say)
+        self._heard_at: float | None = None
 
     @property
     def is_open(self) -> bool:
@@ -65,8 +66,14 @@ class ServiceDesk:
         """Return what the connection does, with the countdown to the next attempt."""
         return self.connection.state.sentence(time.monotonic())
 
+    def data_age(self, now: float) -> float | None:
+        """Seconds since the connection last stood, at `time.monotonic()` = `now`; None before it ever did."""
+        return None if self._heard_at is None else max(0.0, now - self._heard_at)
+
     def drain(self) -> list[protocol.Frame]:
         """Act on every waiting control message; return the frames that came, and let as many more come."""
+        if self.is_open:
+            self._heard_at = time.monotonic()
         # Frames first: what was said before a frame came is then known before it is used.
         frames = self.connection.mailbox.take_frames()
         for message in self.connection.mailbox.take_control():

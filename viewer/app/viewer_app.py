@@ -12,7 +12,7 @@ import time as wall_clock
 
 import protocol
 from viewer.app.camera_work import CameraWork
-from viewer.app.picture_text import edit_overlay, hud_text
+from viewer.app.picture_text import edit_overlay, hud_text, loss_notice
 from viewer.app.recalculation import Recalculation
 from viewer.app.run_control import RunControl
 from viewer.app.service_desk import ServiceDesk
@@ -200,6 +200,7 @@ class ViewerApp:
             self.control.take_frame(frame)
         if self.desk.is_open != connected_before or not self.desk.is_open:
             self._status_stale = True
+        self._picture_stale |= self.desk.is_open != connected_before
         self._status_stale |= self.control.is_stale
         self.control.is_stale = False
         changed = self._picture_stale or self._is_text_old(now)
@@ -260,6 +261,7 @@ class ViewerApp:
             edits=edit_overlay(self.shown, self.control.editing.drawing),
             options=self.options,
             hud=self._drawn_text,
+            is_outdated=not self.desk.is_open,
         )
 
     def note_painted(self, size: tuple[int, int]) -> None:
@@ -302,9 +304,12 @@ class ViewerApp:
     # --- within ---------------------------------------------------------------------------------------
 
     def _text(self, shown: ShownRun) -> HudText:
-        notice = "" if self.desk.is_open else self.desk.connection_sentence()
+        notice = "" if self.desk.is_open else self._loss_notice()
         progress = self.desk.book.progress.get(shown.run)
         return hud_text(shown, self.clock.time, progress, self.recalculated, notice)
+
+    def _loss_notice(self) -> str:
+        return loss_notice(self.desk.connection_sentence(), self.desk.data_age(wall_clock.monotonic()))
 
     def _is_text_old(self, now: float) -> bool:
         """Whether the picture is to be drawn anew for its text alone: not often, never before a branch."""

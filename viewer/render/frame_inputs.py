@@ -172,6 +172,8 @@ class FrameInputs:
     edits: EditOverlay | None = None
     options: RenderOptions = field(default_factory=RenderOptions)
     hud: HudText | None = None
+    is_outdated: bool = False
+    """The flood may have gone on unseen, say since the service is gone: the scene is drawn in grey."""
 
 
 @dataclass(frozen=True)

@@ -159,10 +159,16 @@ def scale_panel(metres_per_pixel: float, bearing_deg: float, scale: float) -> Im
 
 
 def banner_panel(text: str, scale: float, alert: bool) -> Image.Image:
-    """One line that must not be overlooked: amber for a remark, red for an alert."""
-    size, margin = round(19 * scale), round(_MARGIN * scale)
-    width, height = _extent(text, size)
+    """Lines that must not be overlooked: amber for a remark, red for an alert."""
+    size, margin, gap = round(19 * scale), round(_MARGIN * scale), round(5 * scale)
+    lines = text.split("\n")
+    extents = [_extent(line, size) for line in lines]
+    width = max(width for width, _ in extents)
+    height = sum(height for _, height in extents) + gap * (len(lines) - 1)
     colour = (176, 32, 32, 232) if alert else (242, 176, 32, 236)
     image, draw = _plate(width + 2 * margin, height + round(1.2 * margin), colour)
-    draw.text((margin, round(0.6 * margin)), text, font=_font(size), fill=_INK if alert else (30, 22, 0, 255))
+    top = round(0.6 * margin)
+    for line, (_, line_height) in zip(lines, extents, strict=True):
+        draw.text((margin, top), line, font=_font(size), fill=_INK if alert else (30, 22, 0, 255))
+        top += line_height + gap
     return image

@@ -22,18 +22,26 @@ class PresentPass:
         set_uniforms(self._program, scene=0)
         self._array = ctx.vertex_array(self._program, [])
 
-    def draw(self, target: moderngl.Framebuffer, size: tuple[int, int], scene: moderngl.Texture) -> int:
+    def draw(
+        self,
+        target: moderngl.Framebuffer,
+        size: tuple[int, int],
+        scene: moderngl.Texture,
+        is_outdated: bool = False,
+    ) -> int:
         """Draw, and return the number of draws.
 
         Args:
             target: the framebuffer to end in.
             size: its size now [pixels]; a window's framebuffer object may remember an older one.
             scene: the finished scene.
+            is_outdated: draw it in grey.
         """
         target.use()
         target.viewport = (0, 0, *size)
         self._ctx.enable_only(moderngl.NOTHING)
         scene.use(0)
+        set_uniforms(self._program, outdated=is_outdated)
         self._array.render(moderngl.TRIANGLES, vertices=3)
         return 1
 

@@ -130,7 +130,7 @@ class Renderer:
         draws = self._draw_scene(scene, inputs, selection, slots, projection, view)
         scene.resolve()
         self._picture_size = size
-        draws += self._present.draw(target, size, scene.colour)
+        draws += self._present.draw(target, size, scene.colour, inputs.is_outdated)
         draws += self._hud.draw(target, size, inputs)
         done = perf_counter()
         stats = selection.stats

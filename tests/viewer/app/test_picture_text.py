@@ -2,7 +2,7 @@ import protocol
 from tests.viewer.app.test_run_book import edit, info
 from tests.viewer.tiny_service import valley
 from viewer.app.edit_drawing import EditDrawing
-from viewer.app.picture_text import edit_overlay, edit_rows, hud_text, readout
+from viewer.app.picture_text import edit_overlay, edit_rows, hud_text, loss_notice, readout
 from viewer.app.recalculation import Recalculation
 from viewer.app.shown_run import ShownRun
 from viewer.net import FrameLoader
@@ -23,6 +23,11 @@ def test_the_picture_says_what_it_shows_and_that_it_never_happened() -> None:
     assert (text.title, text.time, text.notice) == ("Tiny valley", "00:00:25", "connection lost")
     assert text.is_hypothetical
     assert "computed until 00:00:30 on cpu" in text.detail
+
+
+def test_a_loss_is_told_with_the_age_of_the_picture_once_there_was_one() -> None:
+    assert loss_notice("no connection", 75.4) == "no connection\nThis picture is 00:01:15 old."
+    assert loss_notice("no connection", None) == "no connection"
 
 
 def test_a_branch_says_from_when_and_how_fast_it_came() -> None:

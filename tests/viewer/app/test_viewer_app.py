@@ -164,11 +164,16 @@ def test_after_a_cut_the_picture_stays_and_the_stream_goes_on(flight: Flight) ->
     inputs = flight.app.frame_inputs()
     assert inputs is not None
     assert inputs.hud is not None
-    assert inputs.hud.notice
+    assert "reconnecting in" in inputs.hud.notice or "connecting to" in inputs.hud.notice
+    assert "This picture is 00:00:0" in inputs.hud.notice
+    assert inputs.is_outdated
     np.testing.assert_array_equal(water_at(flight), before)
     flight.service.computed = 30
     flight.have_frames(30)
+    inputs = flight.app.frame_inputs()
 
+    assert inputs is not None
+    assert not inputs.is_outdated
     assert len(flight.service.hellos) == 2
     assert flight.service.hellos[1].resume is not None
     assert flight.service.hellos[1].resume.run == flight.shown.run

@@ -63,3 +63,12 @@ def test_an_alert_is_red_and_a_remark_amber() -> None:
 @pytest.mark.parametrize("scale", [0.6, 1.0, 2.5])
 def test_panels_grow_with_the_picture(scale: float) -> None:
     assert hud_panels.depth_ramp_panel(scale).width == pytest.approx(252 * scale, rel=0.05)
+
+
+def test_a_banner_of_two_lines_is_taller_and_as_wide_as_its_longer_line() -> None:
+    one, two = (
+        hud_panels.banner_panel(text, 1.0, True) for text in ("connection lost", "connection lost\nold")
+    )
+
+    assert two.width == one.width
+    assert two.height > 1.5 * one.height
