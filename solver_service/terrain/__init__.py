@@ -12,6 +12,7 @@ from solver_service.terrain.projection import (
 )
 from solver_service.terrain.raster import BROKEN_ARCHIVE, Raster, crop
 from solver_service.terrain.read_dem import FORMATS, format_of, read_dem
+from solver_service.terrain.read_gdal import read_geotiff
 from solver_service.terrain.resample import resample, sample
 from solver_service.terrain.terrain import Terrain, datum_offset, make_terrain
 
@@ -32,6 +33,7 @@ __all__ = [
     "is_geographic",
     "make_terrain",
     "read_dem",
+    "read_geotiff",
     "read_polygons",
     "reproject",
     "resample",

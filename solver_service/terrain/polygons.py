@@ -50,7 +50,7 @@ def read_polygons(path: Path) -> list[list[Ring]]:
 
 
 def check_ring(points: Any) -> Ring:
-    """A ring of at least three finite points.
+    """A ring of at least three finite points whose sides do not cross each other.
 
     Raises:
         ValueError: it is not.
@@ -60,7 +60,41 @@ def check_ring(points: Any) -> Ring:
         raise ValueError("a coordinate is not finite")
     if len(set(ring)) < 3:
         raise ValueError(f"a polygon has {len(set(ring))} different corners, at least 3 are allowed")
+    crossing = _self_crossing(np.array(ring))
+    if crossing is not None:
+        (xa, ya), (xb, yb) = (ring[side] for side in crossing)
+        raise ValueError(
+            f"a polygon crosses itself: the sides that begin at ({xa:.10g}, {ya:.10g}) and"
+            f" ({xb:.10g}, {yb:.10g}) meet; corners in their order around the area are allowed"
+        )
     return ring
+
+
+def _self_crossing(ring: NDArray[np.float64]) -> tuple[int, int] | None:
+    """Two sides that pass through each other (touching is no crossing), None where none do."""
+    ends = np.roll(ring, -1, axis=0)
+    low, high = np.minimum(ring, ends), np.maximum(ring, ends)
+    order = np.argsort(low[:, 0], kind="stable")
+    starts = low[order, 0]
+    for place, side in enumerate(order.tolist()):
+        # Sides further on in the order that begin west of where this one ends.
+        near = order[place + 1 : np.searchsorted(starts, high[side, 0], side="right")]
+        near = near[(low[near, 1] <= high[side, 1]) & (high[near, 1] >= low[side, 1])]
+        if near.size == 0:
+            continue
+        a, b, c, d = ring[side], ends[side], ring[near], ends[near]
+        apart = _turn(a, b, c) * _turn(a, b, d) < 0.0
+        apart &= _turn(c, d, a) * _turn(c, d, b) < 0.0
+        if apart.any():
+            return side, int(near[apart][0])
+    return None
+
+
+def _turn(a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sign of the side of the line from a to b on which c lies: 1 left, -1 right, 0 on it."""
+    ab, ac = b - a, c - a
+    sign: NDArray[np.float64] = np.sign(ab[..., 0] * ac[..., 1] - ab[..., 1] * ac[..., 0])
+    return sign
 
 
 def _from_csv(text: str) -> list[list[Ring]]:

@@ -7,6 +7,7 @@ driver, fixed by the first bytes of the file, and GDAL neither lists folders nor
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 
 from solver_service.errors import TerrainError
@@ -16,15 +17,20 @@ TIFF_MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 METRES = ("", "m", "metre", "metres", "meter", "meters")
 
 
-def read_geotiff(path: Path) -> Raster:
+def read_geotiff(path: Path, band: int | None = None, units: Sequence[str] = METRES) -> Raster:
     """Read a GeoTIFF (cloud-optimised or not).
 
+    Args:
+        path: the file.
+        band: which band, from 1; None where there is one.
+        units: spellings of the unit that the file may name; "" for none.
+
     Raises:
-        TerrainError: not a GeoTIFF of one band of elevations on an upright grid.
+        TerrainError: not a GeoTIFF with that band of real numbers on an upright grid.
     """
     if not _head(path).startswith(TIFF_MAGIC):
         raise TerrainError(f"File '{path.name}' does not begin like a TIFF; a GeoTIFF is allowed there.")
-    return _read(path, "GTiff")
+    return _read(path, "GTiff", band, units)
 
 
 def read_usgs_dem(path: Path) -> Raster:
@@ -55,7 +61,7 @@ def _head(path: Path) -> bytes:
         raise TerrainError(f"File '{path.name}' cannot be read: {error.strerror}.") from error
 
 
-def _read(path: Path, driver: str) -> Raster:
+def _read(path: Path, driver: str, band: int | None = None, units: Sequence[str] = METRES) -> Raster:
     import rasterio
     from rasterio.errors import NotGeoreferencedWarning, RasterioError
 
@@ -67,20 +73,24 @@ def _read(path: Path, driver: str) -> Raster:
             rasterio.open(path.resolve(), driver=driver) as source,
         ):
             check_size(path, source.height, source.width)
-            if source.count != 1:
+            if band is None and source.count != 1:
                 raise TerrainError(f"Raster '{path.name}' has {source.count} bands; one band is allowed.")
+            number = 1 if band is None else band
+            if not 1 <= number <= source.count:
+                raise TerrainError(f"Raster '{path.name}' has {source.count} bands and no band {number}.")
             turn = source.transform
             if turn.b or turn.d or turn.a <= 0.0 or turn.e >= 0.0:
                 raise TerrainError(
                     f"Raster '{path.name}' is turned or has no geographic position (transform"
                     f" {tuple(turn)[:6]}); rows that run from north to south are allowed."
                 )
-            unit = (source.units[0] or "").strip().lower()
-            if unit not in METRES:
-                raise TerrainError(f"Raster '{path.name}' has values in '{unit}'; metres are allowed.")
-            if source.dtypes[0].startswith("complex"):
+            unit = (source.units[number - 1] or "").strip().lower()
+            if unit not in units:
+                allowed = "metres are" if units is METRES else f"'{units[-1]}' is"
+                raise TerrainError(f"Raster '{path.name}' has values in '{unit}'; {allowed} allowed.")
+            if source.dtypes[number - 1].startswith("complex"):
                 raise TerrainError(f"Raster '{path.name}' has complex values; real numbers are allowed.")
-            values = one_mask(source.read(1), source.nodata)[::-1]
+            values = one_mask(source.read(number), source.nodatavals[number - 1])[::-1]
             bottom = turn.f + source.height * turn.e
             crs = source.crs.to_wkt() if source.crs else None
             return Raster(values, turn.c, bottom, turn.a, -turn.e, crs)

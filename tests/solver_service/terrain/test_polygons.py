@@ -99,3 +99,36 @@ def test_what_is_no_polygon_is_refused_by_name(tmp_path: Path, name: str, text: 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(TerrainError, match=r"'houses.geojson' does not exist"):
         read_polygons(tmp_path / "houses.geojson")
+
+
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 9), st.integers(0, 9)),
+        min_size=4,
+        max_size=8,
+        unique=True,
+    )
+)
+def test_a_ring_is_refused_exactly_where_two_of_its_sides_pass_through_each_other(points) -> None:
+    import itertools
+
+    import shapely
+
+    sides = [shapely.LineString(pair) for pair in itertools.pairwise([*points, points[0]])]
+    crossing = any(a.crosses(b) for a, b in itertools.combinations(sides, 2))
+    if crossing:
+        with pytest.raises(ValueError, match=r"crosses itself: the sides that begin at \(\d"):
+            check_ring(points)
+    else:
+        assert check_ring(points) == points
+
+
+def test_a_long_winding_ring_is_checked_in_no_time() -> None:
+    turn = np.linspace(0.0, 2.0 * np.pi, 20_000, endpoint=False)
+    radius = 5.0 + np.sin(200.0 * turn)
+    ring = np.column_stack([radius * np.cos(turn), radius * np.sin(turn)])
+
+    assert len(check_ring(ring)) == 20_000
+    ring[[5000, 5001]] = ring[[5001, 5000]]
+    with pytest.raises(ValueError, match="crosses itself"):
+        check_ring(ring)

@@ -98,3 +98,22 @@ def test_a_raster_that_is_not_upright_metres_is_refused(tmp_path: Path, options,
 def test_a_picture_is_no_terrain(tmp_path: Path) -> None:
     with pytest.raises(TerrainError, match="has 3 bands; one band is allowed"):
         read_geotiff(write_tiff(tmp_path / "ortho.tif", np.zeros((3, 4, 5), np.float32)))
+
+
+def test_one_of_several_bands_is_read_by_its_number_and_unit(tmp_path: Path) -> None:
+    path = tmp_path / "rain.tif"
+    place = rasterio.transform.from_origin(0.0, 30.0, 10.0, 10.0)
+    with rasterio.open(
+        path, "w", driver="GTiff", height=3, width=2, count=2, dtype="float32", transform=place
+    ) as file:
+        for band in (1, 2):
+            file.write(np.full((3, 2), 10.0 * band, np.float32), band)
+        file.units = ("mm/h", "mm/h")
+
+    assert (read_geotiff(path, 2, ("", "mm/h")).values == 20.0).all()
+    with pytest.raises(TerrainError, match=r"has 2 bands and no band 3"):
+        read_geotiff(path, 3, ("", "mm/h"))
+    with pytest.raises(TerrainError, match=r"has values in 'mm/h'; metres are allowed"):
+        read_geotiff(path, 1)
+    with pytest.raises(TerrainError, match=r"has values in 'mm/h'; 'm/s' is allowed"):
+        read_geotiff(path, 1, ("", "m/s"))
