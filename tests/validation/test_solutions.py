@@ -4,6 +4,7 @@ equations."""
 import numpy as np
 import pytest
 
+from tests.validation.equations import residual
 from tests.validation.solutions import (
     Ritter,
     SimpleWave,
@@ -20,36 +21,6 @@ WAVE = SimpleWave(h0=10.0, rise=0.05, width=200.0)
 VORTEX = StationaryVortex(h0=10.0, peak=3.0, radius=200.0)
 
 
-def residual(solution, x, y, time, step=1e-3):
-    """Largest residual of the equations, each relative to its largest term, by central differences."""
-    g = solution.gravity
-
-    def terms(x, y, time):
-        h, u, v = solution.state(x, y, time)
-        return np.array(
-            [h, h * u, h * v, h * u * u + 0.5 * g * h * h, h * u * v, h * v * v + 0.5 * g * h * h]
-        )
-
-    def slope(along):
-        sx, sy, st = np.array(along) * step
-        return (terms(x + sx, y + sy, time + st) - terms(x - sx, y - sy, time - st)) / (2.0 * step)
-
-    dt, dx, dy = slope((0, 0, 1)), slope((1, 0, 0)), slope((0, 1, 0))
-    h = solution.state(x, y, time)[0]
-    zx = (solution.bed(x + step, y) - solution.bed(x - step, y)) / (2.0 * step)
-    zy = (solution.bed(x, y + step) - solution.bed(x, y - step)) / (2.0 * step)
-    equations = (
-        (dt[0], dx[1], dy[2]),
-        (dt[1], dx[3], dy[4], g * h * zx),
-        (dt[2], dx[4], dy[5], g * h * zy),
-    )
-    return max(
-        np.abs(sum(parts)).max() / max(np.abs(part).max() for part in parts)
-        for parts in equations
-        if np.any(parts)
-    )
-
-
 @pytest.mark.parametrize(
     ("solution", "reach", "time"),
     [
@@ -58,6 +29,8 @@ def residual(solution, x, y, time, step=1e-3):
         (WAVE, 600.0, 0.5 * WAVE.breaking_time()),
         (VORTEX, 600.0, 5.0),
         (Ritter(10.0), 200.0, 25.0),
+        (Ritter(10.0, angle=0.5), 100.0, 25.0),
+        (ThackerPlanar(1000.0, 10.0, 400.0, phase=0.8), 400.0, 100.0),
         (Stoker(10.0, 1.0), 150.0, 25.0),
         (Stoker(10.0, 1.0, angle=0.7), 100.0, 25.0),
     ],

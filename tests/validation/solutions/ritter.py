@@ -8,6 +8,8 @@ With c = sqrt(g h_left) and xi = (x - x_dam) / t the solution is a single rarefa
     xi <= -c           h = h_left                     u = 0
     -c < xi < 2 c      h = (2 c - xi)^2 / (9 g)       u = 2 (xi + c) / 3
     xi >= 2 c          h = 0                          u = 0
+
+``angle`` turns the direction of the flow from the x axis towards the y axis; the dam passes through (x_dam, 0).
 """
 
 from dataclasses import dataclass
@@ -20,10 +22,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Ritter:
-    """Water of depth ``h_left`` [m] stands at x < ``x_dam`` [m] until the dam vanishes at time 0."""
+    """Water of depth ``h_left`` [m] stands behind ``x_dam`` [m]; ``angle`` [rad]: flow direction."""
 
     h_left: float
     x_dam: float = 0.0
+    angle: float = 0.0
     gravity: float = 9.81
 
     @property
@@ -31,22 +34,17 @@ class Ritter:
         """Celerity of the undisturbed water [m/s]."""
         return float(np.sqrt(self.gravity * self.h_left))
 
-    def front(self, time: float) -> float:
-        """Position of the dry front [m]."""
-        return self.x_dam + 2.0 * self.celerity * time
-
     def bed(self, x: Array, y: Array) -> Array:
         """Bed elevation [m]: flat."""
         return np.zeros(np.broadcast(x, y).shape)
 
     def state(self, x: Array, y: Array, time: float) -> tuple[Array, Array, Array]:
         """Depth [m] and velocity [m/s] at the points and the time [s]."""
-        x = np.broadcast_to(x, np.broadcast(x, y).shape)
+        s = (x - self.x_dam) * np.cos(self.angle) + y * np.sin(self.angle)
         if time <= 0.0:
-            return np.where(x < self.x_dam, self.h_left, 0.0), np.zeros(x.shape), np.zeros(x.shape)
-        c = self.celerity
-        xi = (x - self.x_dam) / time
+            return np.where(s < 0.0, self.h_left, 0.0), np.zeros(s.shape), np.zeros(s.shape)
+        c, xi = self.celerity, s / time
         fan = np.clip(xi, -c, 2.0 * c)
         h = (2.0 * c - fan) ** 2 / (9.0 * self.gravity)
-        u = np.where(xi < 2.0 * c, 2.0 * (fan + c) / 3.0, 0.0)
-        return h, u, np.zeros(x.shape)
+        speed = np.where(xi < 2.0 * c, 2.0 * (fan + c) / 3.0, 0.0)
+        return h, speed * np.cos(self.angle), speed * np.sin(self.angle)

@@ -19,11 +19,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ThackerPlanar:
-    """Basin of radius ``a`` [m] and depth ``h0`` [m]; the centre circles at ``sigma`` [m]."""
+    """Basin of radius ``a`` [m] and depth ``h0`` [m]; the centre circles at ``sigma`` [m].
+
+    ``phase`` [rad] is the direction in which the centre of the water lies at time 0, from east to north.
+    """
 
     a: float
     h0: float
     sigma: float
+    phase: float = 0.0
     gravity: float = 9.81
 
     @property
@@ -46,7 +50,8 @@ class ThackerPlanar:
 
     def state(self, x: Array, y: Array, time: float) -> tuple[Array, Array, Array]:
         """Depth [m] and velocity [m/s]; both are zero where the bed is dry."""
-        cos, sin = np.cos(self.omega * time), np.sin(self.omega * time)
+        turn = self.omega * time + self.phase
+        cos, sin = np.cos(turn), np.sin(turn)
         eta = self.sigma * self.h0 / self.a**2 * (2.0 * (x * cos + y * sin) - self.sigma)
         h = np.maximum(eta - self.bed(x, y), 0.0)
         u = np.where(h > 0.0, -self.sigma * self.omega * sin, 0.0)
