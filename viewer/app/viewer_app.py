@@ -12,6 +12,7 @@ import time as wall_clock
 
 import protocol
 from viewer.app.camera_work import CameraWork
+from viewer.app.map_maker import MapMaker
 from viewer.app.picture_text import edit_overlay, hud_text, loss_notice
 from viewer.app.recalculation import Recalculation
 from viewer.app.run_control import RunControl
@@ -46,7 +47,7 @@ from viewer.errors import ViewerError
 from viewer.net import ConnectionThread, FrameLoader
 from viewer.render import FrameInputs, HudText, RenderOptions
 from viewer.view_status import ViewStatus
-from viewer.world import Heightfield, PlaybackClock
+from viewer.world import Heightfield, MapView, PlaybackClock
 
 __all__ = ["ViewerApp"]
 
@@ -103,6 +104,7 @@ class ViewerApp:
         self._status_stale = True
         self._status_made = -math.inf
         self._status = ViewStatus()
+        self._map_maker = MapMaker()
 
     @property
     def desk(self) -> ServiceDesk:
@@ -249,6 +251,13 @@ class ViewerApp:
     def heightfield(self) -> Heightfield | None:
         """The ground, None before the terrain has come."""
         return None if self.shown is None else self.shown.heightfield
+
+    def map_view(self) -> MapView | None:
+        """Return the reference map, the same object while nothing on it has changed; None without terrain."""
+        if self.shown is None or self.camera_work is None:
+            return None
+        now, depth_shown = wall_clock.monotonic(), self.options.depth_shown
+        return self._map_maker.map_view(self.shown, self.camera_work, self.feed, depth_shown, now)
 
     def frame_inputs(self) -> FrameInputs | None:
         """Return all the picture depends on, None before the terrain has come."""

@@ -7,6 +7,7 @@ from typing import Protocol
 
 from viewer.commands import Command
 from viewer.view_status import ViewStatus
+from viewer.world import MapView
 
 __all__ = ["Conductor", "Dispatch", "Painter"]
 
@@ -24,6 +25,9 @@ class Conductor(Protocol):
 
     def status(self) -> ViewStatus:
         """Return the state to show."""
+
+    def map_view(self) -> MapView | None:
+        """Return the reference map, the same object while nothing on it has changed; None without terrain."""
 
 
 class Painter(Protocol):

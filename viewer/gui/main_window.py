@@ -36,6 +36,7 @@ from viewer.gui.conductor import Conductor, Painter
 from viewer.gui.depth_plot import DepthPlot
 from viewer.gui.edit_panel import EditPanel
 from viewer.gui.playback_bar import PlaybackBar
+from viewer.gui.reference_map import ReferenceMap
 from viewer.gui.run_panel import RunPanel
 from viewer.gui.scene_widget import SceneWidget
 from viewer.gui.status_line import StatusLine
@@ -45,6 +46,7 @@ __all__ = ["MainWindow"]
 
 TICK_MS = 16
 DOCK_WIDTH = 340
+MAP_MARGIN = 12
 EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0)
 TAUS_PX = (0.5, 1.0, 2.0, 4.0, 8.0)
 CONTOUR_INTERVALS_M = (0.0, 5.0, 10.0, 20.0, 50.0)
@@ -71,6 +73,8 @@ class MainWindow(QMainWindow):
         self.resize(1440, 900)
         self.scene = SceneWidget(conductor, painter)
         self.scene.failed.connect(self._fail)
+        self.reference_map = ReferenceMap(self._dispatch, self.scene)
+        self.scene.resized.connect(self._place_map)
         self.playback = PlaybackBar(self._dispatch)
         self.edit_panel = EditPanel(self._dispatch)
         self.run_panel = RunPanel(self._dispatch)
@@ -103,6 +107,7 @@ class MainWindow(QMainWindow):
             self.scene.update()
         status = self._conductor.status()
         self.status_line.show_status(status, self.scene.frames_per_second)
+        self._show_map()
         if status is not self._shown:
             self._shown = status
             self.playback.show_status(status)
@@ -125,6 +130,19 @@ class MainWindow(QMainWindow):
 
     def _dispatch(self, command: Command) -> None:
         self._conductor.dispatch(command)
+
+    def _show_map(self) -> None:
+        if not self.map_shown.isChecked():
+            return
+        before = self.reference_map.size()
+        view = self._conductor.map_view()
+        self.reference_map.show_map(view)
+        self.reference_map.setVisible(view is not None)
+        if self.reference_map.size() != before:
+            self._place_map()
+
+    def _place_map(self) -> None:
+        self.reference_map.move(self.scene.width() - self.reference_map.width() - MAP_MARGIN, MAP_MARGIN)
 
     def _fail(self, sentence: str) -> None:
         self.failure = sentence
@@ -180,6 +198,10 @@ class MainWindow(QMainWindow):
         self._switch(view, "Wireframe", "wireframe", "F")
         self._switch(view, "Level-of-detail blocks", "show_blocks", None)
         view.addSeparator()
+        self.map_shown = self._action(view, "Reference map", "M", lambda: None)
+        self.map_shown.setCheckable(True)
+        self.map_shown.setChecked(True)
+        self.map_shown.toggled.connect(self.reference_map.setVisible)
         for dock in self.docks:
             view.addAction(dock.toggleViewAction())
 

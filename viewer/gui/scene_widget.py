@@ -59,6 +59,7 @@ class SceneWidget(QOpenGLWidget):
 
     Signals:
         failed: no picture can be drawn; the text says why.
+        resized: the picture has another size.
 
     Attributes:
         frames_per_second: smoothed rate of the pictures drawn in a row.
@@ -66,6 +67,7 @@ class SceneWidget(QOpenGLWidget):
     """
 
     failed = Signal(str)
+    resized = Signal()
 
     def __init__(self, conductor: Conductor, painter: Painter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -92,6 +94,10 @@ class SceneWidget(QOpenGLWidget):
             return
         self._is_open = True
         self.context().aboutToBeDestroyed.connect(self.release)
+
+    def resizeGL(self, width: int, height: int) -> None:
+        """Tell what lies on the picture that it has another size."""
+        self.resized.emit()
 
     def paintGL(self) -> None:
         """Draw the scene; then look up what lies under the pointer, while the depths are at hand."""

@@ -15,6 +15,7 @@ from viewer.world.heightfield import Heightfield, Rect, union_rect
 from viewer.world.orbit_motion import Flight, Move, OrbitMotion
 from viewer.world.playback_clock import PlaybackClock
 from viewer.world.probe import ProbeReading, probe
+from viewer.world.reference_map import MapView, flood_extent, ground_in_view, relief_map
 from viewer.world.water_timeline import Bracket, WaterTimeline
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "Frustum",
     "GroundHeight",
     "Heightfield",
+    "MapView",
     "Move",
     "OrbitMotion",
     "PlaybackClock",
@@ -39,7 +41,10 @@ __all__ = [
     "WorldFrame",
     "depth_class",
     "depth_class_labels",
+    "flood_extent",
+    "ground_in_view",
     "overview",
     "probe",
+    "relief_map",
     "union_rect",
 ]
