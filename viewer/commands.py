@@ -235,9 +235,14 @@ class DragPan:
 
 @dataclass(frozen=True)
 class Zoom:
-    """Come nearer by `steps` wheel notches (negative: go away)."""
+    """Come nearer by `steps` wheel notches (negative: go away).
+
+    The ground point (x, y) [m] keeps its place in the picture; None: the point looked at does.
+    """
 
     steps: float
+    x: float | None = None
+    y: float | None = None
 
 
 @dataclass(frozen=True)

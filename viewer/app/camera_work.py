@@ -99,8 +99,8 @@ class CameraWork:
                 self._motion.drag_orbit(dx, dy)
             case DragPan(dx, dy):
                 self._motion.drag_pan(dx, dy, self.camera)
-            case Zoom(steps):
-                self._motion.scroll(-steps)
+            case Zoom(steps, x, y):
+                self._motion.scroll(-steps, None if x is None or y is None else self._ground_point(x, y))
             case HoldMove(name, on):
                 move = Move.__members__.get(name.upper())
                 if move is None:
@@ -142,6 +142,9 @@ class CameraWork:
         else:
             self._motion = OrbitMotion()
             self.camera = end.kept_above(self._ground_height, CLEARANCE_CELLS * self._heightfield.grid.dx)
+
+    def _ground_point(self, x: float, y: float) -> tuple[float, float, float]:
+        return self._frame.to_world(x, y, float(self._heightfield.sample(x, y)))
 
     def _overview(self, elevation: float) -> Camera:
         grid = self._heightfield.grid

@@ -145,7 +145,7 @@ class SceneWidget(QOpenGLWidget):
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Pass the wheel on to the tools."""
         steps = event.angleDelta().y() / WHEEL_NOTCH
-        pointer = self._pointer("wheel", event.position(), "none", steps=steps, with_ground=False)
+        pointer = self._pointer("wheel", event.position(), "none", steps=steps)
         self._send(self._toolbox.pointer(pointer, is_drawing=self._is_drawing))
         event.accept()
 

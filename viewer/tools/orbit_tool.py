@@ -21,7 +21,7 @@ class OrbitTool:
     def handle(self, event: PointerEvent) -> list[Command]:
         """Return what the event asks for."""
         if event.kind == "wheel":
-            return [Zoom(event.steps)]
+            return [Zoom(event.steps, *(event.ground or (None, None)))]
         if event.kind == "leave":
             return [MoveHover(None, None)]
         if event.kind in ("press", "double"):

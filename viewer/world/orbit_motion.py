@@ -99,6 +99,7 @@ class OrbitMotion:
         self._velocity = dict.fromkeys(_AXES, 0.0)
         self._pending = dict.fromkeys(_AXES, 0.0)
         self._is_dragging = False
+        self._anchor: Point | None = None
         self._flight: Flight | None = None
         self._flight_time = 0.0
 
@@ -116,6 +117,7 @@ class OrbitMotion:
     def hold(self, move: Move) -> None:
         """A key went down."""
         self._flight = None
+        self._anchor = None
         self._held.add(move)
 
     def release(self, move: Move) -> None:
@@ -130,6 +132,7 @@ class OrbitMotion:
     def begin_drag(self) -> None:
         """A mouse button went down: whatever still coasts stops."""
         self._flight = None
+        self._anchor = None
         self._is_dragging = True
         self._velocity = dict.fromkeys(_AXES, 0.0)
 
@@ -149,9 +152,15 @@ class OrbitMotion:
         """The mouse button came up: the camera coasts on with the velocity of the drag."""
         self._is_dragging = False
 
-    def scroll(self, steps: float) -> None:
-        """The wheel turned; one step toward the user multiplies the distance by about 1.16."""
+    def scroll(self, steps: float, anchor: Point | None = None) -> None:
+        """The wheel turned; one step toward the user multiplies the distance by about 1.16.
+
+        Args:
+            steps: notches toward the user.
+            anchor: world point that keeps its place in the picture; None: the target does.
+        """
         self._flight = None
+        self._anchor = anchor
         self._velocity["zoom"] += 0.15 * steps / _TIME_CONSTANT_S
 
     def fly_to(self, start: Camera, end: Camera, duration: float = 1.2) -> None:
@@ -209,9 +218,13 @@ class OrbitMotion:
             self._velocity[axis] = measured + (self._velocity[axis] - measured) * fade
             self._pending[axis] = 0.0
 
-    @staticmethod
-    def _moved(camera: Camera, moved: dict[str, float]) -> Camera:
-        camera = camera.zoomed(math.exp(moved["zoom"]))
+    def _moved(self, camera: Camera, moved: dict[str, float]) -> Camera:
+        before, camera = camera.distance, camera.zoomed(math.exp(moved["zoom"]))
+        if self._anchor is not None:
+            x, y, z = camera.target
+            x0, y0, z0 = self._anchor
+            f = camera.distance / before
+            camera = camera.with_target((x0 + f * (x - x0), y0 + f * (y - y0), z0 + f * (z - z0)))
         camera = camera.orbited(moved["azimuth"], moved["elevation"])
         return camera.panned(moved["pan_right"] * camera.distance, moved["pan_forward"] * camera.distance)
 

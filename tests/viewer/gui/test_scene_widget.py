@@ -31,12 +31,12 @@ def test_a_left_drag_turns_the_camera(opened: OpenWindow) -> None:
     assert work.camera.distance == pytest.approx(before.distance)
 
 
-def test_the_wheel_comes_nearer(opened: OpenWindow) -> None:
+def test_the_wheel_comes_nearer_to_the_ground_under_the_pointer(opened: OpenWindow) -> None:
     work = opened.app.camera_work
     assert work is not None
     before = work.camera.distance
     scene = opened.window.scene
-    at = QPointF(200.0, 200.0)
+    at = QPointF(opened.pixel_of(1500.0, 2500.0))
     turn = QWheelEvent(
         at,
         scene.mapToGlobal(at),
@@ -49,7 +49,12 @@ def test_the_wheel_comes_nearer(opened: OpenWindow) -> None:
     )
     QApplication.sendEvent(scene, turn)
 
-    opened.until(lambda: work.camera.distance < 0.95 * before)
+    opened.until(lambda: work.camera.distance < 0.95 * before and not work.is_moving)
+    moved = QPointF(opened.pixel_of(1500.0, 2500.0)) - at
+    assert abs(moved.x()) <= 2.0
+    assert abs(moved.y()) <= 8.0  # the target glides onto the ground
+    middle = QPointF(opened.pixel_of(*work.frame.from_world(work.camera.target)[:2]))
+    assert abs(middle.x() - scene.width() / 2) <= 2.0
 
 
 def test_a_held_key_moves_the_target_until_it_is_let_go(opened: OpenWindow) -> None:

@@ -28,8 +28,11 @@ def test_other_drags_move_the_ground(button: str, shift: bool) -> None:
     assert isinstance(drag(button, shift)[1], DragPan)
 
 
-def test_the_wheel_comes_nearer() -> None:
-    assert OrbitTool().handle(PointerEvent("wheel", 0.5, 0.5, steps=2.0)) == [Zoom(2.0)]
+def test_the_wheel_comes_nearer_to_what_is_under_the_pointer() -> None:
+    over_ground = PointerEvent("wheel", 0.5, 0.5, steps=2.0, ground=(3.0, 4.0))
+
+    assert OrbitTool().handle(over_ground) == [Zoom(2.0, 3.0, 4.0)]
+    assert OrbitTool().handle(PointerEvent("wheel", 0.5, 0.1, steps=2.0)) == [Zoom(2.0)]
 
 
 def test_a_click_without_a_drag_probes_the_ground() -> None:

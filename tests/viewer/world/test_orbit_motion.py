@@ -101,6 +101,32 @@ def test_a_wheel_step_zooms_by_a_fixed_factor_in_the_end() -> None:
     assert run(motion, START, 200, 0.02).distance == pytest.approx(1000.0 * math.exp(-0.15), rel=1e-3)
 
 
+def on_picture(camera: Camera, point: tuple[float, float, float]) -> np.ndarray:
+    clip = camera.projection(1.5, 1.0, 1e5) @ camera.view_matrix() @ [*point, 1.0]
+    return np.asarray(clip[:2] / clip[3])
+
+
+def test_the_wheel_keeps_the_point_under_the_pointer_in_place() -> None:
+    anchor = (220.0, 15.0, -140.0)
+    motion = OrbitMotion()
+    motion.scroll(-6.0, anchor)
+    nearer = run(motion, START, 200, 0.02)
+
+    assert nearer.distance == pytest.approx(1000.0 * math.exp(-0.9), rel=1e-3)
+    np.testing.assert_allclose(on_picture(nearer, anchor), on_picture(START, anchor), atol=1e-9)
+    motion.scroll(-6.0)
+    assert run(motion, START, 200, 0.02).target == pytest.approx(START.target)
+
+
+def test_a_key_lets_go_of_the_point_under_the_pointer() -> None:
+    motion = OrbitMotion()
+    motion.scroll(-1.0, (220.0, 15.0, -140.0))
+    nearer = run(motion, START, 200, 0.02)
+    motion.hold(Move.ZOOM_IN)
+
+    assert run(motion, nearer, 20, 0.02).target == pytest.approx(nearer.target)
+
+
 def test_a_flight_ends_exactly_where_it_should() -> None:
     end = Camera((500.0, 20.0, -300.0), 50.0, -3.0, 1.2)
     motion = OrbitMotion()
