@@ -5,8 +5,9 @@ from solver_service.numerics.bed_change import BedChange
 from solver_service.numerics.budget import VolumeBudget
 from solver_service.numerics.device import device_names, pick_device, warm_kernels
 from solver_service.numerics.gauges import GaugeSeries
+from solver_service.numerics.inflows import Rain, Source
 from solver_service.numerics.maxima import Maxima
-from solver_service.numerics.model import EdgeBoundary, FloodModel, Source
+from solver_service.numerics.model import EdgeBoundary, FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.snapshot import Snapshot
 from solver_service.numerics.solver import ShallowWaterSolver
@@ -19,6 +20,7 @@ __all__ = [
     "GaugeSeries",
     "Maxima",
     "ModelError",
+    "Rain",
     "ShallowWaterSolver",
     "Snapshot",
     "SolverBlowUp",

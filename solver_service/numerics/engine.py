@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from solver_service.numerics.active_tiles import ActiveTiles
 from solver_service.numerics.fields import FieldStore, Scheme
-from solver_service.numerics.forcing import Forcing
 from solver_service.numerics.gauges import GaugeRecorder
+from solver_service.numerics.step_part import StepPart
 
 StopQuestion = Callable[[], bool]
 
@@ -24,7 +24,8 @@ class StepParts:
     store: FieldStore
     scheme: Scheme
     tiles: ActiveTiles
-    forcing: Forcing
+    after_step: tuple[StepPart, ...]
+    """Applied in this order after every flux step."""
     gauges: GaugeRecorder
     edge_kinds: npt.NDArray[np.int32]
     courant: float

@@ -1,9 +1,9 @@
 """Water that comes from outside: point and disc discharges, and rain.
 
-A series is linear between its times, zero before the first and held after the last; V(t) is its exact
-integral. What is due as depth, V / area, is handed out in quanta of 2^-16 m (15 micrometres): any float32
-depth below 256 m is raised by a quantum without rounding, so that rain on a deep lake is not lost and the
-budget closes. New water brings no momentum.
+A series is linear or stepped between its times, zero before the first and held after the last; V(t) is
+its exact integral. What is due as depth, V / area, is handed out in quanta of 2^-16 m (15 micrometres): any
+float32 depth below 256 m is raised by a quantum without rounding, so that rain on a deep lake is not lost
+and the budget closes. New water brings no momentum.
 """
 
 import warp as wp
@@ -23,6 +23,7 @@ def release_water(
     rates: wp.array(dtype=wp.float64),
     volumes: wp.array(dtype=wp.float64),
     areas: wp.array(dtype=wp.float64),
+    stepped: wp.array(dtype=wp.int32),
     # outputs
     released: wp.array(dtype=wp.float64),
     depths: wp.array(dtype=wp.float32),
@@ -36,6 +37,7 @@ def release_water(
         rates: joined discharges [m3/s] or rain rates [m/s].
         volumes: V at the times.
         areas: [series], area the water is spread over [m2], 1 for rain.
+        stepped: [series], 1 where the rate holds until the next time, 0 where it is linear.
         released: [series], quanta handed out so far.
         depths: [series], depth to add now [m].
     """
@@ -52,6 +54,8 @@ def release_water(
             n += 1
         part = time - times[n]
         slope = (rates[n + 1] - rates[n]) / (times[n + 1] - times[n])
+        if stepped[k] == 1:
+            slope = wp.float64(0.0)
         volume = volumes[n] + part * (rates[n] + wp.float64(0.5) * slope * part)
     quanta = wp.floor(volume / areas[k] * wp.float64(65536.0))
     depths[k] = wp.float32((quanta - released[k]) * wp.float64(0.0000152587890625))
@@ -84,17 +88,20 @@ def add_source_water(
 
 @wp.kernel(module=SUPPORT_MODULE)
 def add_rain(
-    series: int,
+    first_series: int,
+    rain_cols: int,
     depths: wp.array(dtype=wp.float32),
+    row_index: wp.array(dtype=wp.int32),
+    col_index: wp.array(dtype=wp.int32),
     roof: wp.array2d(dtype=wp.int8),
     # outputs
     h: wp.array2d(dtype=wp.float32),
     u: wp.array2d(dtype=wp.float32),
     v: wp.array2d(dtype=wp.float32),
 ):
-    """Raise every cell that is not blocked."""
+    """Raise every cell that is not blocked by what its rain cell hands out."""
     row, col = wp.tid()
-    depth = depths[series]
+    depth = depths[first_series + row_index[row] * rain_cols + col_index[col]]
     if depth > 0.0 and roof[row, col] == wp.int8(0):
         i = row + 2
         j = col + 2

@@ -146,5 +146,6 @@ class KernelEngine(Engine):
             outputs=[self._wave_slots],
             device=device,
         )
-        parts.forcing.apply(self._clock, fields)
+        for part in parts.after_step:
+            part.apply(self._clock, fields)
         parts.gauges.record(self._clock, fields)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from solver_service.errors import ModelError
 from solver_service.numerics.fields import FloatRaster
+from solver_service.numerics.inflows import Rain, Source
 
 Edge = Literal["west", "east", "south", "north"]
 EDGES: tuple[Edge, ...] = ("west", "east", "south", "north")
@@ -34,6 +35,8 @@ class EdgeBoundary:
     """First cell along the edge, counted from the south or the west."""
     last: int
     """One past the last cell."""
+    id: str = ""
+    """Name in the budget; unnamed ones are west-1, west-2, ... by their place along the list."""
 
     def __post_init__(self) -> None:
         if self.edge not in EDGES:
@@ -44,56 +47,6 @@ class EdgeBoundary:
             raise ModelError(
                 f"The boundary spans the cells {self.first} to {self.last}; 0 <= first < last is allowed."
             )
-
-
-def check_series(what: str, times: npt.NDArray[np.float64], rates: npt.NDArray[np.float64]) -> None:
-    """Refuse a series that is not finite, not increasing in time, or negative.
-
-    Raises:
-        ModelError: naming the entry.
-    """
-    if times.ndim != 1 or times.shape != rates.shape or times.size == 0:
-        raise ModelError(
-            f"The series of {what} has {times.size} times and {rates.size} values; as many, at least 1."
-        )
-    for k, (time, rate) in enumerate(zip(times, rates, strict=True)):
-        if not (np.isfinite(time) and np.isfinite(rate) and rate >= 0.0):
-            raise ModelError(
-                f"Entry {k} of the series of {what} is {rate} at {time} s; a finite value >= 0 is allowed."
-            )
-        if k and time <= times[k - 1]:
-            raise ModelError(f"Entry {k} of the series of {what} is at {time} s, not after {times[k - 1]} s.")
-
-
-@dataclass(frozen=True)
-class Source:
-    """Water that enters in some cells, spread evenly over them.
-
-    Raises:
-        ModelError: when the series or the cells are not valid.
-    """
-
-    rows: npt.NDArray[np.int32]
-    """Rows of the cells, each cell once."""
-    cols: npt.NDArray[np.int32]
-    """Columns of the cells."""
-    times: npt.NDArray[np.float64]
-    """Times of the series [s], increasing; no inflow before the first."""
-    discharge: npt.NDArray[np.float64]
-    """Discharge at these times [m3/s], linear between, held after the last."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "rows", np.atleast_1d(np.asarray(self.rows, np.int32)))
-        object.__setattr__(self, "cols", np.atleast_1d(np.asarray(self.cols, np.int32)))
-        object.__setattr__(self, "times", np.atleast_1d(np.asarray(self.times, np.float64)))
-        object.__setattr__(self, "discharge", np.atleast_1d(np.asarray(self.discharge, np.float64)))
-        check_series("a source's discharge", self.times, self.discharge)
-        if self.rows.ndim != 1 or self.rows.shape != self.cols.shape or self.rows.size == 0:
-            raise ModelError(
-                f"A source has {self.rows.size} rows and {self.cols.size} columns; as many, at least 1."
-            )
-        if len(set(zip(self.rows.tolist(), self.cols.tolist(), strict=True))) != self.rows.size:
-            raise ModelError("A source names a cell twice; each cell once is allowed.")
 
 
 @dataclass(frozen=True)
@@ -116,8 +69,8 @@ class FloodModel:
     """Edge segments; later ones win where they overlap."""
     sources: tuple[Source, ...] = ()
     """Point and disc inflows."""
-    rain: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]] | None = None
-    """Times [s] and rates [m/s] of rain on every cell that is not blocked."""
+    rain: Rain | None = None
+    """Rain on the cells that are not blocked."""
     blocked: npt.NDArray[np.bool_] | None = field(default=None)
     """Cells outside the computation (no data): walls."""
 
@@ -139,14 +92,30 @@ class FloodModel:
         for source in self.sources:
             self._check_source(source)
         if self.rain is not None:
-            times, rates = (np.atleast_1d(np.asarray(part, np.float64)) for part in self.rain)
-            check_series("rain", times, rates)
-            object.__setattr__(self, "rain", (times, rates))
+            covered = (self.rain.row_index.size, self.rain.col_index.size)
+            if covered != self.z_b.shape:
+                raise ModelError(
+                    f"The rain covers {covered} rows and columns; the grid's are {self.z_b.shape}."
+                )
 
     @property
     def shape(self) -> tuple[int, int]:
         """(nrows, ncols)."""
         return (self.z_b.shape[0], self.z_b.shape[1])
+
+    def edge_segments(self) -> tuple[npt.NDArray[np.int32], list[str]]:
+        """Segment of each edge face, -1 for walls, [4, longest edge], and the names of the segments."""
+        owners = np.full((4, max(self.shape)), -1, np.int32)
+        names: list[str] = []
+        counts = dict.fromkeys(EDGES, 0)
+        for boundary in self.boundaries:
+            faces = owners[EDGES.index(boundary.edge), boundary.first : boundary.last]
+            faces[:] = -1
+            if boundary.kind != "wall":
+                counts[boundary.edge] += 1
+                faces[:] = len(names)
+                names.append(boundary.id or f"{boundary.edge}-{counts[boundary.edge]}")
+        return owners, names
 
     def _check_bed_and_roughness(self) -> None:
         if self.blocked is not None and self.blocked.shape != self.z_b.shape:

@@ -20,6 +20,7 @@ from solver_service.numerics.active_tiles import REFRESH_STEPS
 from solver_service.numerics.chunks import cut_chunks, deal_chunks
 from solver_service.numerics.clock_kernels import (
     CLOCK_BEFORE,
+    CLOCK_DT,
     CLOCK_LENGTH,
     CLOCK_TIME,
     choose_dt,
@@ -122,10 +123,11 @@ class RowEngine(Engine):
         self.wave_speed = float(self._chunk_waves.max()) if sweeps else 0.0
         fields = store.fields[parity]
         store.parity = 1 - parity
-        if parts.forcing.series_count or parts.gauges.is_due(after):
+        if parts.after_step or parts.gauges.is_due(after):
             clock = self._clock.numpy()
-            clock[int(CLOCK_BEFORE)], clock[int(CLOCK_TIME)] = before, after
-            parts.forcing.apply(self._clock, fields)
+            clock[[int(CLOCK_BEFORE), int(CLOCK_TIME), int(CLOCK_DT)]] = before, after, dt
+            for part in parts.after_step:
+                part.apply(self._clock, fields)
             if parts.gauges.is_due(after):
                 parts.gauges.record(self._clock, fields)
                 parts.gauges.drain()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import math
 
 import numpy as np
@@ -11,19 +10,12 @@ import warp as wp
 
 from solver_service.errors import ModelError, SolverBlowUp
 from solver_service.numerics.active_tiles import ActiveTiles
+from solver_service.numerics.after_step import changeable_cells, parts_of
 from solver_service.numerics.bed_change import BedChange, change_water, check_bed
-from solver_service.numerics.budget import VolumeBudget, edge_outflow, stored_volume
+from solver_service.numerics.budget import VolumeBudget, close_budget, edge_volumes, stored_volume
 from solver_service.numerics.device import pick_device, thread_count, warm_kernels
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
-from solver_service.numerics.fields import (
-    MAXIMA_NAMES,
-    STATE_NAMES,
-    TILE,
-    FieldStore,
-    FloatRaster,
-    Scheme,
-)
-from solver_service.numerics.forcing import Forcing, forced_cells
+from solver_service.numerics.fields import STATE_NAMES, TILE, FieldStore, FloatRaster, Scheme
 from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
 from solver_service.numerics.ghost_kernels import OPEN, WALL, pad_bed
@@ -33,12 +25,14 @@ from solver_service.numerics.model import EDGES, FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.row_engine import RowEngine, rows_compile
 from solver_service.numerics.snapshot import Snapshot
+from solver_service.numerics.state_keeping import check_snapshot, put_back, take_snapshot
 from solver_service.numerics.wet_block_kernels import BLOCK_STRIDE, classify_blocks, quantise_depth
 
 WALL_HEIGHT = 1000.0
 """How far blocked cells stand above the highest bed [m]."""
 
-LOG = logging.getLogger(__name__)
+WAVE_FLOOR = 1.0
+"""Wave speed that a step always allows for [m/s], so that the first water does not meet a giant step."""
 
 
 class ShallowWaterSolver:
@@ -62,14 +56,14 @@ class ShallowWaterSolver:
         self.device = pick_device(device)
         self._store = store = FieldStore(*model.shape, self.device)
         self._edge_kinds = self._edge_codes()
-        self._z_b = model.z_b.copy()
-        store.write_padded("z", self._walled(self._z_b))
+        self._set_bed(model.z_b)
         drag = float(GRAVITY) * np.broadcast_to(np.asarray(model.manning_n, np.float64), model.shape) ** 2
         store.write_padded("drag", np.pad(drag.astype(np.float32), 2, mode="symmetric"))
-        self._forcing = Forcing(model, self.device)
-        self._dt_max = min(params.dt_max, params.cfl * self._forcing.dt_max)
+        self._after_step = parts_of(model, params, store)
+        longest = [params.dt_max, params.cfl * model.dx / WAVE_FLOOR]
+        self._dt_max = min([*longest, *(part.dt_max for part in self._after_step)])
         self._gauges = GaugeRecorder(params, store, self._dt_max)
-        self._tiles = ActiveTiles(store, params.depth_film, forced_cells(model, store))
+        self._tiles = ActiveTiles(store, params.depth_film, changeable_cells(self._after_step, model.shape))
         self._engine = self._choose_engine()
         self._initial_volume = 0.0
         self._edits_volume = 0.0
@@ -82,6 +76,10 @@ class ShallowWaterSolver:
                 OPEN if boundary.kind == "open" else WALL
             )
         return kinds
+
+    def _set_bed(self, z_b: FloatRaster) -> None:
+        self._z_b = z_b.copy()
+        self._store.write_padded("z", self._walled(z_b))
 
     def _walled(self, z_b: FloatRaster) -> FloatRaster:
         if self.model.blocked is not None:
@@ -107,7 +105,7 @@ class ShallowWaterSolver:
             store=self._store,
             scheme=self._scheme(),
             tiles=self._tiles,
-            forcing=self._forcing,
+            after_step=self._after_step,
             gauges=self._gauges,
             edge_kinds=self._edge_kinds,
             courant=courant,
@@ -152,7 +150,8 @@ class ShallowWaterSolver:
         engine.time, engine.dt, engine.step_count = 0.0, 0.0, 0
         begin_maxima(store, depth, self.params.depth_arrival)
         store.edge_flow.zero_()
-        self._forcing.released = np.zeros(self._forcing.series_count)
+        for part in self._after_step:
+            part.begin()
         self._initial_volume = stored_volume(store, self.model.dx)
         self._edits_volume = 0.0
         self._gauges.begin()
@@ -244,8 +243,9 @@ class ShallowWaterSolver:
 
     @property
     def bed(self) -> FloatRaster:
-        """Bed as edited [m], a copy."""
-        return self._z_b.copy()
+        """Bed as it is now [m], a copy."""
+        z_b, blocked = self._store.read("z"), self.model.blocked
+        return z_b if blocked is None else np.where(blocked, self._z_b, z_b)
 
     def depth(self) -> FloatRaster:
         """Depth [m], a host copy [nrows, ncols]."""
@@ -271,14 +271,13 @@ class ShallowWaterSolver:
 
     def budget(self) -> VolumeBudget:
         """Where the water came from and went."""
-        inflow, rain = self._forcing.volumes()
-        return VolumeBudget(
-            initial=self._initial_volume,
-            stored=stored_volume(self._store, self.model.dx),
-            inflow=inflow,
-            outflow=edge_outflow(self._store, self.model.dx),
-            rain=rain,
-            edits=self._edits_volume,
+        dx = self.model.dx
+        return close_budget(
+            self._initial_volume,
+            stored_volume(self._store, dx),
+            self._edits_volume,
+            edge_volumes(self._store, dx, *self.model.edge_segments()),
+            (part.volumes() for part in self._after_step),
         )
 
     def gauge_series(self) -> GaugeSeries:
@@ -320,48 +319,25 @@ class ShallowWaterSolver:
             ModelError: when shape or values are not valid.
         """
         bed = check_bed(z_b, self.model.shape)
-        change = change_water(self._store, self._z_b, bed, self.params.depth_dry, self.model.dx)
+        change = change_water(self._store, self.bed, bed, self.params.depth_dry, self.model.dx)
         self._edits_volume += change.volume_cut
-        self._z_b = bed.copy()
-        self._store.write_padded("z", self._walled(bed))
+        self._set_bed(bed)
         self._water_changed()
         return change
 
     def snapshot(self) -> Snapshot:
         """The exact state; see `Snapshot`."""
-        store, engine = self._store, self._engine
-        arrays: dict[str, npt.NDArray] = {name: store.read(name) for name in (*STATE_NAMES, *MAXIMA_NAMES)}
-        arrays["z_b"] = self._z_b.copy()
-        arrays["edge_flow"] = store.edge_flow.numpy().copy()
-        arrays["released"] = self._forcing.released
-        arrays["gauge_records"] = self._gauges.records().copy()
-        scalars = {
-            "time": engine.time,
-            "step_count": engine.step_count,
-            "dt": engine.dt,
-            "wave_speed": engine.wave_speed,
-            "initial_volume": self._initial_volume,
-            "edits_volume": self._edits_volume,
-        }
-        return Snapshot(arrays, scalars)
+        volumes = {"initial_volume": self._initial_volume, "edits_volume": self._edits_volume}
+        return take_snapshot(self._engine, self.bed, volumes)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a state of this model; what follows is bit for bit what followed then.
 
         Raises:
-            ModelError: when the snapshot lacks a part or belongs to another grid, sources or gauges.
+            ModelError: when the snapshot lacks a part or belongs to another model.
         """
-        snapshot.check(self.model.shape, self._forcing.series_count, self._gauges.count)
-        arrays, scalars = snapshot.arrays, snapshot.scalars
-        store, engine = self._store, self._engine
-        self._z_b = np.array(arrays["z_b"], np.float32)
-        store.write_padded("z", self._walled(self._z_b))
-        for name in (*STATE_NAMES, *MAXIMA_NAMES):
-            store.write(name, arrays[name])
-        store.edge_flow.assign(arrays["edge_flow"])
-        self._forcing.released = arrays["released"]
-        self._gauges.restore(arrays["gauge_records"])
-        self._initial_volume = float(scalars["initial_volume"])
-        self._edits_volume = float(scalars["edits_volume"])
-        engine.time, engine.dt = float(scalars["time"]), float(scalars["dt"])
-        engine.step_count, engine.wave_speed = int(scalars["step_count"]), float(scalars["wave_speed"])
+        check_snapshot(self._engine, snapshot)
+        self._set_bed(np.array(snapshot.arrays["z_b"], np.float32))
+        put_back(self._engine, snapshot)
+        self._initial_volume = float(snapshot.scalars["initial_volume"])
+        self._edits_volume = float(snapshot.scalars["edits_volume"])

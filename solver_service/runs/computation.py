@@ -110,6 +110,8 @@ def _feed(digest: hashlib._Hash, value: object) -> None:
     if isinstance(value, np.ndarray):
         digest.update(f"{value.dtype.str}{value.shape}".encode())
         digest.update(np.ascontiguousarray(value).reshape(-1).view(np.uint8).data)
+    elif isinstance(value, dict):
+        _feed(digest, sorted(value.items()))
     elif isinstance(value, list | tuple):
         for item in value:
             _feed(digest, item)

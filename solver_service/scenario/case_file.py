@@ -89,7 +89,7 @@ def read_case(folder: CaseFolder, cell_size: float | None = None) -> Case:
             manning_n=manning_n,
             boundaries=read_boundaries(top.tables("boundary"), terrain),
             sources=sources,
-            rain=read_rain(top.table("rain"), folder, start_time),
+            rain=read_rain(top.table("rain"), folder, terrain.z_b.shape, start_time),
             blocked=terrain.wall if terrain.wall.any() else None,
         )
         params = _read_params(run, gauge_cells(gauges, sections, terrain.grid))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver_service.errors import CaseError
-from solver_service.numerics import EdgeBoundary, Source
+from solver_service.numerics import EdgeBoundary, Rain, Source
 from solver_service.numerics.model import EDGES, Edge
 from solver_service.scenario.case_folder import CaseFolder
 from solver_service.scenario.ground import read_on_grid
@@ -178,9 +178,9 @@ def read_sources(
 
 
 def read_rain(
-    table: Table | None, folder: CaseFolder, start_time: datetime | None
-) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    """Times [s] and rates [m/s] of rain on every cell; None without rain.
+    table: Table | None, folder: CaseFolder, shape: tuple[int, int], start_time: datetime | None
+) -> Rain | None:
+    """Rain on every cell of a grid of that shape; None without rain.
 
     Raises:
         CaseError: the series is not valid, or a raster series is asked for.
@@ -191,11 +191,11 @@ def read_rain(
         raise table.wrong("series", "either 'series' (a CSV file) or 'rate' in mm/h is needed")
     if table.has("rate"):
         rate = table.real("rate", "a rain rate in mm/h from 0 to 10000", 0.0, 1e4)
-        return np.array([0.0]), np.array([rate * MM_PER_HOUR])
+        return Rain.uniform(0.0, rate * MM_PER_HOUR, shape)
     name = table.text("series")
     if not name.lower().endswith(".csv"):
         raise table.wrong(
             "series", "this version computes rain that is the same everywhere, from a .csv of mm/h;"
         )
     series = read_series(folder.find(name, f"{table.file}: [rain] series"), start_time)
-    return series.times, series.values * MM_PER_HOUR
+    return Rain.uniform(series.times, series.values * MM_PER_HOUR, shape)

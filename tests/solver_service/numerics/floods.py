@@ -2,7 +2,14 @@
 
 import numpy as np
 
-from solver_service.numerics import EdgeBoundary, FloodModel, ShallowWaterSolver, SolverParams, Source
+from solver_service.numerics import (
+    EdgeBoundary,
+    FloodModel,
+    Rain,
+    ShallowWaterSolver,
+    SolverParams,
+    Source,
+)
 
 SHAPE = (70, 90)
 
@@ -37,7 +44,7 @@ def full_model(z=None, rain=True, seed=3):
         manning_n=(0.02 + 0.03 * rng.random(z.shape)).astype(np.float32),
         boundaries=(EdgeBoundary("west", "open", 10, 50), EdgeBoundary("north", "open", 20, 40)),
         sources=(Source([20, 20, 21], [80, 81, 80], [0.0, 4.0, 12.0], [0.0, 60.0, 20.0]),),
-        rain=(np.array([0.0, 8.0]), np.array([2e-5, 1e-4])) if rain else None,
+        rain=Rain.uniform([0.0, 8.0], [2e-5, 1e-4], z.shape) if rain else None,
         blocked=blocked,
     )
 
@@ -58,6 +65,7 @@ def everything(s):
     shown |= {name: getattr(m, name) for name in m.__dataclass_fields__}
     budget = s.budget()
     shown["budget"] = np.array([budget.stored, budget.inflow, budget.outflow, budget.rain, budget.edits])
+    shown["infiltrated"] = np.array([budget.infiltration])
     shown["clock"] = np.array([s.time, s.step_count, s.dt])
     return shown
 

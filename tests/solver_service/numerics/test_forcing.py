@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solver_service.numerics import FloodModel, ModelError, Source
+from solver_service.numerics import FloodModel, ModelError, Rain, Source
 from tests.solver_service.numerics.floods import solver
 
 CELL = 4.0
@@ -24,7 +24,7 @@ def test_a_hydrograph_brings_the_integral_of_its_series():
 
 
 def test_rain_on_a_deep_lake_is_not_lost_to_rounding():
-    s = solver(basin(rain=(np.array([0.0]), np.array([10e-3 / 3600.0]))), threads=1)
+    s = solver(basin(rain=Rain.uniform(0.0, 10e-3 / 3600.0, (30, 30))), threads=1)
     s.set_water(np.full((30, 30), 12.0, np.float32))
     s.advance_to(600.0)
     fallen = 10e-3 / 3600.0 * 600.0
@@ -36,7 +36,7 @@ def test_rain_on_a_deep_lake_is_not_lost_to_rounding():
 def test_rain_does_not_fall_on_blocked_cells():
     blocked = np.zeros((30, 30), bool)
     blocked[5:9, 5:9] = True
-    s = solver(basin(rain=(np.array([0.0]), np.array([1e-3])), blocked=blocked), threads=1)
+    s = solver(basin(rain=Rain.uniform(0.0, 1e-3, (30, 30)), blocked=blocked), threads=1)
     s.advance_to(10.0)
     assert not s.depth()[blocked].any()
     assert s.budget().rain == pytest.approx(1e-2 * (900 - 16) * CELL, rel=2e-3)
@@ -54,14 +54,32 @@ def test_a_source_off_the_grid_is_refused():
         basin(sources=(Source([30], [2], [0.0], [1.0]),))
 
 
-@pytest.mark.parametrize(
-    ("times", "rates", "words"),
-    [
-        ([0.0, 0.0], [1.0, 1.0], "not after"),
-        ([0.0], [-1.0], "finite value >= 0"),
-        ([0.0, 1.0], [1.0], "as many"),
-    ],
-)
-def test_a_series_that_is_not_valid_is_refused(times, rates, words):
-    with pytest.raises(ModelError, match=words):
-        Source([1], [1], times, rates)
+def test_raster_rain_falls_where_it_is_said_to_and_closes_the_budget():
+    rates = np.zeros((3, 2, 2))
+    rates[:, 0, 1], rates[:, 1, 0] = [1e-4, 3e-4, 0.0], 2e-4
+    rows, cols = np.repeat([0, 1], [10, 20]), np.repeat([0, 1], [25, 5])
+    linear, stepped = (
+        solver(basin(rain=Rain([0.0, 20.0, 40.0], rates, rows, cols, interpolation)), threads=1)
+        for interpolation in ("linear", "step")
+    )
+    for s, east in ((linear, 7e-3), (stepped, 8e-3)):
+        s.advance_to(40.0)
+        fallen = east * 50 * CELL + 8e-3 * 500 * CELL
+        assert s.budget().rain == pytest.approx(fallen, abs=550 * CELL * QUANTUM)
+        assert abs(s.budget().error_relative) < 1e-7
+        assert s.depth()[2, 2] == 0.0
+        assert s.depth()[25, 3] == pytest.approx(8e-3, abs=2 * QUANTUM)
+        assert s.depth()[2, 29] == pytest.approx(east, abs=1e-4)
+
+
+def test_sources_are_booked_by_name():
+    sources = (
+        Source([3], [3], [0.0], [2.0]),
+        Source([9], [9], [0.0], [1.0], id="spring"),
+        Source([20], [20], [0.0], [0.5]),
+    )
+    s = solver(basin(sources=sources), threads=1)
+    s.advance_to(10.0)
+    booked = s.budget().sources
+    assert list(booked) == ["source-1", "spring", "source-3"]
+    assert list(booked.values()) == pytest.approx([20.0, 10.0, 5.0], abs=1e-3)

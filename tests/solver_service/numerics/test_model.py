@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solver_service.numerics import EdgeBoundary, FloodModel, ModelError, Source
+from solver_service.numerics import EdgeBoundary, FloodModel, ModelError, Rain, Source
 
 BED = np.zeros((10, 12), np.float32)
 
@@ -26,7 +26,7 @@ def with_value(value, row=3, col=4):
         ({"manning_n": np.zeros((3, 3))}, "roughness has the shape"),
         ({"blocked": np.zeros((3, 3), bool)}, "blocked mask has the shape"),
         ({"boundaries": (EdgeBoundary("north", "open", 0, 13),)}, "north boundary ends at cell 13"),
-        ({"rain": (np.array([0.0, 1.0]), np.array([1.0, np.inf]))}, "Entry 1 of the series of rain"),
+        ({"rain": Rain.uniform(0.0, 1e-5, (10, 11))}, r"rain covers \(10, 11\) rows and columns"),
         ({"sources": (Source([3], [4], [0.0], [1.0]),), "blocked": with_value(1.0).astype(bool)}, "no data"),
     ],
 )
@@ -49,6 +49,20 @@ def test_a_boundary_that_is_not_valid_is_refused(arguments, words):
         EdgeBoundary(*arguments)
 
 
-def test_a_source_that_names_a_cell_twice_is_refused():
-    with pytest.raises(ModelError, match="twice"):
-        Source([1, 1], [2, 2], [0.0], [1.0])
+def test_edge_segments_are_named_and_the_later_one_owns_the_faces():
+    model = FloodModel(
+        5.0,
+        BED,
+        0.03,
+        boundaries=(
+            EdgeBoundary("west", "open", 0, 8),
+            EdgeBoundary("west", "wall", 2, 3),
+            EdgeBoundary("west", "open", 6, 10),
+            EdgeBoundary("east", "open", 0, 1, id="weir"),
+        ),
+    )
+    owners, names = model.edge_segments()
+    assert names == ["west-1", "west-2", "weir"]
+    assert owners[0, :10].tolist() == [0, 0, -1, 0, 0, 0, 1, 1, 1, 1]
+    assert owners[1, 0] == 2
+    assert (owners[2:] == -1).all()

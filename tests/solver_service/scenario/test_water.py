@@ -193,11 +193,12 @@ def test_rain_is_read_in_mm_an_hour(tmp_path: Path) -> None:
     write_case(tmp_path, DRY + '\n[rain]\nseries = "rain.csv"\n')
     (tmp_path / "rain.csv").write_text("time_s,rain\n0,36\n600,0\n")
 
-    times, rates = load_case(tmp_path).model.rain
+    rain = load_case(tmp_path).model.rain
 
-    assert times.tolist() == [0.0, 600.0]
-    np.testing.assert_allclose(rates, [1e-5, 0.0])
-    np.testing.assert_allclose(loaded(tmp_path / "b", "\n[rain]\nrate = 36.0\n").model.rain[1], [1e-5])
+    assert rain.times.tolist() == [0.0, 600.0]
+    np.testing.assert_allclose(rain.rates.ravel(), [1e-5, 0.0])
+    constant = loaded(tmp_path / "b", "\n[rain]\nrate = 36.0\n").model.rain
+    np.testing.assert_allclose(constant.rates.ravel(), [1e-5])
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,34 @@
+"""The parts that follow every flux step of a model, in their fixed order."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from solver_service.numerics.fields import FieldStore
+from solver_service.numerics.forcing import Forcing
+from solver_service.numerics.model import FloodModel
+from solver_service.numerics.params import SolverParams
+from solver_service.numerics.step_part import StepPart
+
+
+def parts_of(model: FloodModel, params: SolverParams, store: FieldStore) -> tuple[StepPart, ...]:
+    """The parts that the model asks for: structures, then sources and rain, then infiltration.
+
+    Args:
+        model: what does not move.
+        params: scheme and tuning.
+        store: rasters of the run.
+    """
+    parts: list[StepPart] = []
+    if Forcing.is_needed(model):
+        parts.append(Forcing(model, params.cfl, store.device))
+    return tuple(parts)
+
+
+def changeable_cells(parts: tuple[StepPart, ...], shape: tuple[int, int]) -> npt.NDArray[np.bool_]:
+    """Cells that any part may change even where nothing moves, [nrows, ncols]."""
+    mask = np.zeros(shape, np.bool_)
+    for part in parts:
+        mask |= part.cells()
+    return mask

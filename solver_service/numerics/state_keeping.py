@@ -1,0 +1,69 @@
+"""Collects the exact state of a run into a snapshot, and puts it back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from solver_service.numerics.engine import Engine
+from solver_service.numerics.fields import MAXIMA_NAMES, STATE_NAMES
+from solver_service.numerics.snapshot import Snapshot
+
+
+def take_snapshot(engine: Engine, z_b: npt.NDArray, volumes: Mapping[str, float]) -> Snapshot:
+    """The state between two steps.
+
+    Args:
+        engine: the engine, whose parts hold the state.
+        z_b: bed [m], [nrows, ncols].
+        volumes: `initial_volume` and `edits_volume` [m3].
+    """
+    parts = engine.parts
+    store = parts.store
+    arrays: dict[str, npt.NDArray] = {name: store.read(name) for name in (*STATE_NAMES, *MAXIMA_NAMES)}
+    arrays["z_b"] = z_b
+    arrays["edge_flow"] = store.edge_flow.numpy().copy()
+    arrays["gauge_records"] = parts.gauges.records().copy()
+    for part in parts.after_step:
+        arrays |= part.snapshot()
+    scalars = {
+        "time": engine.time,
+        "step_count": engine.step_count,
+        "dt": engine.dt,
+        "wave_speed": engine.wave_speed,
+        **volumes,
+    }
+    return Snapshot(arrays, scalars)
+
+
+def check_snapshot(engine: Engine, snapshot: Snapshot) -> None:
+    """Refuse a snapshot of another model.
+
+    Raises:
+        ModelError: naming what is missing or of another size.
+    """
+    parts = engine.parts
+    shape = (parts.store.nrows, parts.store.ncols)
+    shapes: dict[str, tuple[int | None, ...]] = dict.fromkeys((*STATE_NAMES, *MAXIMA_NAMES, "z_b"), shape)
+    shapes["edge_flow"] = tuple(parts.store.edge_flow.shape)
+    shapes["gauge_records"] = (None, parts.gauges.count, 4)
+    for part in parts.after_step:
+        shapes |= {name: array.shape for name, array in part.snapshot().items()}
+    snapshot.check(shapes)
+
+
+def put_back(engine: Engine, snapshot: Snapshot) -> None:
+    """Restore everything but the bed from a snapshot that was checked."""
+    parts = engine.parts
+    store = parts.store
+    arrays, scalars = snapshot.arrays, snapshot.scalars
+    for name in (*STATE_NAMES, *MAXIMA_NAMES):
+        store.write(name, arrays[name])
+    store.edge_flow.assign(np.asarray(arrays["edge_flow"], np.float64))
+    parts.gauges.restore(arrays["gauge_records"])
+    for part in parts.after_step:
+        part.restore(arrays)
+    engine.time, engine.dt = float(scalars["time"]), float(scalars["dt"])
+    engine.step_count, engine.wave_speed = int(scalars["step_count"]), float(scalars["wave_speed"])
