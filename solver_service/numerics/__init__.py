@@ -4,10 +4,12 @@ from solver_service.errors import DeviceError, ModelError, SolverBlowUp
 from solver_service.numerics.bed_change import BedChange
 from solver_service.numerics.budget import VolumeBudget
 from solver_service.numerics.device import device_names, pick_device, warm_kernels
+from solver_service.numerics.edge_boundary import EdgeBoundary
 from solver_service.numerics.gauges import GaugeSeries
+from solver_service.numerics.infiltration import Infiltration
 from solver_service.numerics.inflows import Rain, Source
 from solver_service.numerics.maxima import Maxima
-from solver_service.numerics.model import EdgeBoundary, FloodModel
+from solver_service.numerics.model import FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.snapshot import Snapshot
 from solver_service.numerics.solver import ShallowWaterSolver
@@ -18,6 +20,7 @@ __all__ = [
     "EdgeBoundary",
     "FloodModel",
     "GaugeSeries",
+    "Infiltration",
     "Maxima",
     "ModelError",
     "Rain",

@@ -3,50 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from solver_service.errors import ModelError
+from solver_service.numerics.breach import Breach
+from solver_service.numerics.edge_boundary import EDGES, EdgeBoundary, check_boundaries
+from solver_service.numerics.edge_boundary import Edge as Edge
 from solver_service.numerics.fields import FloatRaster
+from solver_service.numerics.infiltration import Infiltration
 from solver_service.numerics.inflows import Rain, Source
-
-Edge = Literal["west", "east", "south", "north"]
-EDGES: tuple[Edge, ...] = ("west", "east", "south", "north")
+from solver_service.numerics.structures import Structure
 
 MANNING_MAX = 10.0
 """Largest Manning roughness accepted [s m^(-1/3)]."""
-
-
-@dataclass(frozen=True)
-class EdgeBoundary:
-    """What happens along a part of an edge; where nothing is said stands a wall.
-
-    Raises:
-        ModelError: when edge, kind or range are not valid.
-    """
-
-    edge: Edge
-    """Side of the grid."""
-    kind: Literal["wall", "open"]
-    """A wall reflects, an open edge lets water leave and none enter."""
-    first: int
-    """First cell along the edge, counted from the south or the west."""
-    last: int
-    """One past the last cell."""
-    id: str = ""
-    """Name in the budget; unnamed ones are west-1, west-2, ... by their place along the list."""
-
-    def __post_init__(self) -> None:
-        if self.edge not in EDGES:
-            raise ModelError(f"The boundary edge is {self.edge!r}; allowed are {', '.join(EDGES)}.")
-        if self.kind not in ("wall", "open"):
-            raise ModelError(f"The boundary kind is {self.kind!r}; allowed are wall and open.")
-        if not 0 <= self.first < self.last:
-            raise ModelError(
-                f"The boundary spans the cells {self.first} to {self.last}; 0 <= first < last is allowed."
-            )
 
 
 @dataclass(frozen=True)
@@ -66,11 +37,17 @@ class FloodModel:
     manning_n: float | FloatRaster
     """Manning roughness [s m^(-1/3)], one value or a raster."""
     boundaries: tuple[EdgeBoundary, ...] = ()
-    """Edge segments; later ones win where they overlap."""
+    """Edge segments, none of which overlap; elsewhere stand walls."""
     sources: tuple[Source, ...] = ()
     """Point and disc inflows."""
     rain: Rain | None = None
     """Rain on the cells that are not blocked."""
+    infiltration: Infiltration | None = None
+    """What the ground takes of the water on it."""
+    structures: tuple[Structure, ...] = ()
+    """Weirs, culverts and pumps."""
+    breaches: tuple[Breach, ...] = ()
+    """Openings that grow in levees and dams."""
     blocked: npt.NDArray[np.bool_] | None = field(default=None)
     """Cells outside the computation (no data): walls."""
 
@@ -83,19 +60,23 @@ class FloodModel:
         if not (np.isfinite(self.dx) and self.dx > 0.0):
             raise ModelError(f"The cell size is {self.dx!r}; a positive number of metres is allowed.")
         self._check_bed_and_roughness()
-        for boundary in self.boundaries:
-            length = self.z_b.shape[0 if boundary.edge in ("west", "east") else 1]
-            if boundary.last > length:
-                raise ModelError(
-                    f"The {boundary.edge} boundary ends at cell {boundary.last}; the edge has {length}."
-                )
+        check_boundaries(self.boundaries, self.shape, self.blocked)
         for source in self.sources:
             self._check_source(source)
+        for built in (*self.structures, *self.breaches):
+            built.check_on(self.shape, self.dx, self.blocked)
         if self.rain is not None:
             covered = (self.rain.row_index.size, self.rain.col_index.size)
             if covered != self.z_b.shape:
                 raise ModelError(
                     f"The rain covers {covered} rows and columns; the grid's are {self.z_b.shape}."
+                )
+
+        if self.infiltration is not None and self.infiltration.zone is not None:
+            zones = self.infiltration.zone.shape
+            if zones != self.z_b.shape:
+                raise ModelError(
+                    f"The infiltration's zones have the shape {zones}; the bed's is {self.z_b.shape}."
                 )
 
     @property

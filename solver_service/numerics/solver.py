@@ -14,6 +14,7 @@ from solver_service.numerics.after_step import changeable_cells, parts_of
 from solver_service.numerics.bed_change import BedChange, change_water, check_bed
 from solver_service.numerics.budget import VolumeBudget, close_budget, edge_volumes, stored_volume
 from solver_service.numerics.device import pick_device, thread_count, warm_kernels
+from solver_service.numerics.edge_boundary import EDGES
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
 from solver_service.numerics.fields import STATE_NAMES, TILE, FieldStore, FloatRaster, Scheme
 from solver_service.numerics.friction import GRAVITY
@@ -21,7 +22,7 @@ from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
 from solver_service.numerics.ghost_kernels import OPEN, WALL, pad_bed
 from solver_service.numerics.kernel_engine import KernelEngine
 from solver_service.numerics.maxima import Maxima, begin_maxima, read_maxima
-from solver_service.numerics.model import EDGES, FloodModel
+from solver_service.numerics.model import FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.row_engine import RowEngine, rows_compile
 from solver_service.numerics.snapshot import Snapshot
@@ -59,11 +60,12 @@ class ShallowWaterSolver:
         self._set_bed(model.z_b)
         drag = float(GRAVITY) * np.broadcast_to(np.asarray(model.manning_n, np.float64), model.shape) ** 2
         store.write_padded("drag", np.pad(drag.astype(np.float32), 2, mode="symmetric"))
-        self._after_step = parts_of(model, params, store)
+        self._tiles = ActiveTiles(store, params.depth_film, model.infiltration is not None)
+        self._after_step = parts_of(model, params, store, self._tiles)
+        self._tiles.keep_awake(changeable_cells(self._after_step, model.shape))
         longest = [params.dt_max, params.cfl * model.dx / WAVE_FLOOR]
         self._dt_max = min([*longest, *(part.dt_max for part in self._after_step)])
         self._gauges = GaugeRecorder(params, store, self._dt_max)
-        self._tiles = ActiveTiles(store, params.depth_film, changeable_cells(self._after_step, model.shape))
         self._engine = self._choose_engine()
         self._initial_volume = 0.0
         self._edits_volume = 0.0
