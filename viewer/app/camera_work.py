@@ -61,6 +61,12 @@ class CameraWork:
         """The map between grid coordinates and the world of the picture."""
         return self._frame
 
+    def pose(self) -> FlyTo:
+        """Return the command that brings back the view as it is now."""
+        x, y, _ = self._frame.from_world(self.camera.target)
+        azimuth, elevation = math.degrees(self.camera.azimuth), math.degrees(self.camera.elevation)
+        return FlyTo(x, y, self.camera.distance, azimuth, elevation)
+
     def set_aspect(self, aspect: float) -> None:
         """Follow the shape of the picture; a view that nobody has changed yet shows all the terrain."""
         if abs(aspect - self.aspect) > 1e-3 and self._is_untouched:

@@ -24,6 +24,7 @@ from viewer.app.water_feed import WaterFeed
 from viewer.commands import (
     Command,
     CommandError,
+    FlyTo,
     FollowLive,
     MoveHover,
     Pause,
@@ -251,6 +252,10 @@ class ViewerApp:
     def heightfield(self) -> Heightfield | None:
         """The ground, None before the terrain has come."""
         return None if self.shown is None else self.shown.heightfield
+
+    def view_pose(self) -> FlyTo | None:
+        """Return the command that brings back the present view; None without terrain."""
+        return None if self.camera_work is None else self.camera_work.pose()
 
     def map_view(self) -> MapView | None:
         """Return the reference map, the same object while nothing on it has changed; None without terrain."""

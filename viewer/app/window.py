@@ -7,13 +7,14 @@ import sys
 from collections.abc import Callable
 
 import moderngl
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import QSettings, QTimer
 from PySide6.QtWidgets import QApplication
 
 from viewer.app.display import has_display
 from viewer.app.stage import Stage
 from viewer.app.viewer_app import ViewerApp
 from viewer.errors import ContextError
+from viewer.gui.kept_settings import KeptSettings
 from viewer.gui.main_window import MainWindow
 from viewer.gui.qt_start import start_qt
 
@@ -53,9 +54,11 @@ def prepare_window() -> QApplication:
     return start_qt(sys.argv[:1])
 
 
-def make_window(app: ViewerApp, closed: Callable[[], None] | None = None) -> MainWindow:
+def make_window(
+    app: ViewerApp, closed: Callable[[], None] | None = None, kept: KeptSettings | None = None
+) -> MainWindow:
     """Return the window of `app`, not shown yet; Qt must be running."""
-    return MainWindow(app, Stage(app, window_context), closed)
+    return MainWindow(app, Stage(app, window_context), closed, kept)
 
 
 def run_window(app: ViewerApp, closed: Callable[[], None]) -> int:
@@ -69,7 +72,7 @@ def run_window(app: ViewerApp, closed: Callable[[], None]) -> int:
         ContextError: there is no display, or a system library is missing.
     """
     application = prepare_window()
-    window = make_window(app, closed)
+    window = make_window(app, closed, KeptSettings(QSettings()))
     interrupted = signal.signal(signal.SIGINT, lambda *_: window.close())
     wake = QTimer()  # lets Python look at signals while Qt waits
     wake.timeout.connect(lambda: None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from viewer.commands import Command
+from viewer.commands import Command, FlyTo
 from viewer.view_status import ViewStatus
 from viewer.world import MapView
 
@@ -25,6 +25,9 @@ class Conductor(Protocol):
 
     def status(self) -> ViewStatus:
         """Return the state to show."""
+
+    def view_pose(self) -> FlyTo | None:
+        """Return the command that brings back the present view; None without terrain."""
 
     def map_view(self) -> MapView | None:
         """Return the reference map, the same object while nothing on it has changed; None without terrain."""

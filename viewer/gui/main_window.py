@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable
 
 from PySide6.QtCore import Qt, QTimer
-from PySide6.QtGui import QAction, QActionGroup, QCloseEvent, QKeySequence
+from PySide6.QtGui import QAction, QCloseEvent, QKeySequence
 from PySide6.QtWidgets import (
     QDockWidget,
     QFileDialog,
     QFrame,
+    QInputDialog,
     QMainWindow,
     QMenu,
     QMessageBox,
@@ -23,23 +25,23 @@ from viewer.commands import (
     BeginEdit,
     CancelEdit,
     Command,
+    FlyTo,
     FollowLive,
     Pause,
-    ResetView,
     SavePicture,
     Seek,
-    SetOption,
     TogglePlay,
-    TopView,
 )
 from viewer.gui.conductor import Conductor, Painter
 from viewer.gui.depth_plot import DepthPlot
 from viewer.gui.edit_panel import EditPanel
+from viewer.gui.kept_settings import KeptSettings
 from viewer.gui.playback_bar import PlaybackBar
 from viewer.gui.reference_map import ReferenceMap
 from viewer.gui.run_panel import RunPanel
 from viewer.gui.scene_widget import SceneWidget
 from viewer.gui.status_line import StatusLine
+from viewer.gui.view_menu import ViewMenu
 from viewer.view_status import ViewStatus
 
 __all__ = ["MainWindow"]
@@ -47,9 +49,6 @@ __all__ = ["MainWindow"]
 TICK_MS = 16
 DOCK_WIDTH = 340
 MAP_MARGIN = 12
-EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0)
-TAUS_PX = (0.5, 1.0, 2.0, 4.0, 8.0)
-CONTOUR_INTERVALS_M = (0.0, 5.0, 10.0, 20.0, 50.0)
 
 
 class MainWindow(QMainWindow):
@@ -59,14 +58,21 @@ class MainWindow(QMainWindow):
         conductor: carries out commands and knows the state.
         painter: draws the scene.
         closed: called once when the window is closing, while the OpenGL context still lives.
+        kept: what to remember between starts; None remembers nothing.
     """
 
     def __init__(
-        self, conductor: Conductor, painter: Painter, closed: Callable[[], None] | None = None
+        self,
+        conductor: Conductor,
+        painter: Painter,
+        closed: Callable[[], None] | None = None,
+        kept: KeptSettings | None = None,
     ) -> None:
         super().__init__()
         self._conductor = conductor
         self._closed = closed
+        self._kept = kept
+        self._views: dict[str, FlyTo] = {}
         self._shown: ViewStatus | None = None
         self.failure: str | None = None
         self.setWindowTitle("Flood Emergency Visualizer")
@@ -95,7 +101,10 @@ class MainWindow(QMainWindow):
         ]
         self.resizeDocks(self.docks, [DOCK_WIDTH] * len(self.docks), Qt.Orientation.Horizontal)
         self.resizeDocks(self.docks, [310, 330, 240], Qt.Orientation.Vertical)
+        self.view_menu = ViewMenu(self._dispatch, self._keep_view, self)
+        self.view_menu.map_shown.toggled.connect(self.reference_map.setVisible)
         self._make_menus()
+        self._restore()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.tick)
         self._timer.start(TICK_MS)
@@ -109,6 +118,9 @@ class MainWindow(QMainWindow):
         self.status_line.show_status(status, self.scene.frames_per_second)
         self._show_map()
         if status is not self._shown:
+            if self._shown is None or status.title != self._shown.title:
+                self._views = self._kept.views(status.title) if self._kept is not None else {}
+                self.view_menu.show_views(self._views, self._forget_view)
             self._shown = status
             self.playback.show_status(status)
             self.edit_panel.show_status(status)
@@ -122,6 +134,7 @@ class MainWindow(QMainWindow):
     def closeEvent(self, event: QCloseEvent) -> None:
         """End cleanly: first the picture, then whatever the caller has to close."""
         self._timer.stop()
+        self._keep()
         self.scene.release()
         if self._closed is not None:
             closed, self._closed = self._closed, None
@@ -131,8 +144,42 @@ class MainWindow(QMainWindow):
     def _dispatch(self, command: Command) -> None:
         self._conductor.dispatch(command)
 
+    def _restore(self) -> None:
+        if self._kept is None:
+            return
+        self._kept.restore_window(self)
+        self.view_menu.choose(self._kept.options())
+        self.view_menu.map_shown.setChecked(self._kept.map_shown())
+        self._dispatch(self._kept.edit_settings())
+
+    def _keep(self) -> None:
+        if self._kept is None:
+            return
+        self._kept.keep_window(self)
+        self._kept.keep_options(self.view_menu.options())
+        self._kept.keep_map_shown(self.view_menu.map_shown.isChecked())
+        self._kept.keep_edit_settings(self._conductor.status().edit_settings)
+
+    def _keep_view(self) -> None:
+        flight = self._conductor.view_pose()
+        if flight is None:
+            return
+        number = next(k for k in itertools.count(1) if f"View {k}" not in self._views)
+        name, is_given = QInputDialog.getText(self, "Keep this view", "Name", text=f"View {number}")
+        if is_given and name.strip():
+            self._change_views({**self._views, name.strip(): flight})
+
+    def _forget_view(self, name: str) -> None:
+        self._change_views({kept: view for kept, view in self._views.items() if kept != name})
+
+    def _change_views(self, views: dict[str, FlyTo]) -> None:
+        self._views = views
+        self.view_menu.show_views(views, self._forget_view)
+        if self._kept is not None and self._shown is not None:
+            self._kept.keep_views(self._shown.title, views)
+
     def _show_map(self) -> None:
-        if not self.map_shown.isChecked():
+        if not self.view_menu.map_shown.isChecked():
             return
         before = self.reference_map.size()
         view = self._conductor.map_view()
@@ -178,32 +225,8 @@ class MainWindow(QMainWindow):
         edits.addAction(self.edit_panel.redo)
         edits.addSeparator()
         edits.addAction(self.edit_panel.recalculate)
-        self._make_view_menu(self.menuBar().addMenu("&View"))
-
-    def _make_view_menu(self, view: QMenu) -> None:
-        self._action(view, "Whole terrain", "R", lambda: self._dispatch(ResetView()))
-        self._action(view, "From above", "T", lambda: self._dispatch(TopView()))
-        view.addSeparator()
-        self._choices(view, "Vertical exaggeration", "exaggeration", EXAGGERATIONS, 1.0, lambda v: f"{v:g} x")
-        self._choices(
-            view,
-            "Contours",
-            "contour_interval",
-            CONTOUR_INTERVALS_M,
-            0.0,
-            lambda v: f"{v:g} m" if v else "off",
-        )
-        self._choices(view, "Terrain error", "tau_px", TAUS_PX, 2.0, lambda v: f"{v:g} px")
-        self._switch(view, "Depth classes", "depth_classes", "C")
-        self._switch(view, "Wireframe", "wireframe", "F")
-        self._switch(view, "Level-of-detail blocks", "show_blocks", None)
-        view.addSeparator()
-        self.map_shown = self._action(view, "Reference map", "M", lambda: None)
-        self.map_shown.setCheckable(True)
-        self.map_shown.setChecked(True)
-        self.map_shown.toggled.connect(self.reference_map.setVisible)
-        for dock in self.docks:
-            view.addAction(dock.toggleViewAction())
+        self.menuBar().addMenu(self.view_menu)
+        self.view_menu.add_docks(self.docks)
 
     def _action(self, menu: QMenu, text: str, shortcut: str | None, slot: Callable[[], object]) -> QAction:
         action = menu.addAction(text)
@@ -211,31 +234,6 @@ class MainWindow(QMainWindow):
             action.setShortcut(QKeySequence(shortcut))
         action.triggered.connect(lambda: slot())
         return action
-
-    def _switch(self, menu: QMenu, text: str, option: str, shortcut: str | None) -> None:
-        action = menu.addAction(text)
-        action.setCheckable(True)
-        if shortcut is not None:
-            action.setShortcut(QKeySequence(shortcut))
-        action.toggled.connect(lambda on: self._dispatch(SetOption(option, on)))
-
-    def _choices(
-        self,
-        menu: QMenu,
-        text: str,
-        option: str,
-        values: tuple[float, ...],
-        initial: float,
-        label: Callable[[float], str],
-    ) -> None:
-        choices = menu.addMenu(text)
-        group = QActionGroup(choices)
-        for value in values:
-            action = choices.addAction(label(value))
-            action.setCheckable(True)
-            action.setChecked(value == initial)
-            action.triggered.connect(lambda _on, value=value: self._dispatch(SetOption(option, value)))
-            group.addAction(action)
 
     def _toggle_drawing(self) -> None:
         self._dispatch(CancelEdit() if self._conductor.status().is_drawing else BeginEdit())

@@ -60,6 +60,7 @@ def start_qt(arguments: list[str]) -> QApplication:
         )
     QSurfaceFormat.setDefaultFormat(surface_format())
     application = QApplication(arguments)
+    application.setOrganizationName("fev")
     application.setApplicationName("fev-viewer")
     application.setApplicationDisplayName("Flood Emergency Visualizer")
     apply_theme(application)

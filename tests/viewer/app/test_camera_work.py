@@ -111,3 +111,16 @@ def test_what_is_no_camera_command_is_left_to_others(work: CameraWork) -> None:
 def test_a_senseless_move_is_refused(work: CameraWork, command: object) -> None:
     with pytest.raises(CommandError):
         work.carry_out(command)  # type: ignore[arg-type]
+
+
+def test_the_pose_brings_back_the_view(work: CameraWork) -> None:
+    work.carry_out(FlyTo(1300.0, 2400.0, 500.0, 40.0, 35.0, seconds=0.0))
+    before, pose = work.camera, work.pose()
+    work.carry_out(ResetView())
+    settle(work)
+    assert work.camera.distance != pytest.approx(500.0)
+    work.carry_out(pose)
+    settle(work)
+
+    assert work.camera.target == pytest.approx(before.target, abs=1e-6)
+    assert (work.camera.distance, work.camera.azimuth) == pytest.approx((before.distance, before.azimuth))

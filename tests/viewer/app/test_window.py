@@ -1,3 +1,4 @@
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -46,13 +47,21 @@ service.close()
 """
 
 
-def test_the_window_runs_until_it_is_closed_and_closes_what_is_behind_it(display: str) -> None:
+def test_the_window_runs_until_it_is_closed_closes_what_is_behind_it_and_keeps_its_settings(
+    display: str, tmp_path: Path
+) -> None:
     done = subprocess.run(
-        [sys.executable, "-c", PROGRAM], cwd=ROOT, capture_output=True, text=True, timeout=60
+        [sys.executable, "-c", PROGRAM],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
     )
 
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == ["0", "closed"]
+    assert "exaggeration" in (tmp_path / "fev" / "fev-viewer.conf").read_text(encoding="utf-8")
 
 
 def test_the_window_is_made_without_being_shown(qapp: QApplication) -> None:

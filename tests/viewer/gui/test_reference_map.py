@@ -82,9 +82,9 @@ def test_in_the_window_the_map_lies_in_the_upper_right_and_travels(opened: OpenW
 
 def test_the_menu_hides_and_shows_it(opened: OpenWindow) -> None:
     opened.until(opened.window.reference_map.isVisible)
-    opened.window.map_shown.trigger()
+    opened.window.view_menu.map_shown.trigger()
     opened.window.tick()
     assert not opened.window.reference_map.isVisible()
-    opened.window.map_shown.trigger()
+    opened.window.view_menu.map_shown.trigger()
 
     opened.until(opened.window.reference_map.isVisible)

@@ -1,0 +1,130 @@
+"""The View menu: how the picture is drawn, from where, and what lies beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtGui import QAction, QActionGroup, QKeySequence
+from PySide6.QtWidgets import QDockWidget, QMenu, QWidget
+
+from viewer.commands import FlyTo, ResetView, SetOption, TopView
+from viewer.gui.conductor import Dispatch
+
+__all__ = ["OptionValue", "ViewMenu"]
+
+OptionValue = bool | float
+
+EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0)
+TAUS_PX = (0.5, 1.0, 2.0, 4.0, 8.0)
+CONTOUR_INTERVALS_M = (0.0, 5.0, 10.0, 20.0, 50.0)
+NUMBERED_VIEWS = 9
+
+
+class ViewMenu(QMenu):
+    """The menu of the window.
+
+    Args:
+        dispatch: carries out the commands.
+        keep_view: called to keep the present view.
+        parent: the window.
+
+    Attributes:
+        map_shown: action that shows and hides the reference map.
+    """
+
+    def __init__(self, dispatch: Dispatch, keep_view: Callable[[], None], parent: QWidget) -> None:
+        super().__init__("&View", parent)
+        self._dispatch = dispatch
+        self._switches: dict[str, QAction] = {}
+        self._choices: dict[str, dict[float, QAction]] = {}
+        self._action("Whole terrain", "R", lambda: dispatch(ResetView()))
+        self._action("From above", "T", lambda: dispatch(TopView()))
+        self._action("Keep this view", "Ctrl+K", keep_view)
+        self.kept_views = self.addMenu("Kept views")
+        self.addSeparator()
+        self._choice("Vertical exaggeration", "exaggeration", EXAGGERATIONS, 1.0, lambda v: f"{v:g} x")
+        self._choice(
+            "Contours", "contour_interval", CONTOUR_INTERVALS_M, 0.0, lambda v: f"{v:g} m" if v else "off"
+        )
+        self._choice("Terrain error", "tau_px", TAUS_PX, 2.0, lambda v: f"{v:g} px")
+        self._switch("Depth classes", "depth_classes", "C")
+        self._switch("Wireframe", "wireframe", "F")
+        self._switch("Level-of-detail blocks", "show_blocks", None)
+        self.addSeparator()
+        self.map_shown = self._action("Reference map", "M", lambda: None)
+        self.map_shown.setCheckable(True)
+        self.map_shown.setChecked(True)
+        self.show_views({}, lambda name: None)
+
+    def add_docks(self, docks: list[QDockWidget]) -> None:
+        """Let the docks be shown and hidden."""
+        for dock in docks:
+            self.addAction(dock.toggleViewAction())
+
+    def options(self) -> dict[str, OptionValue]:
+        """Return what is chosen, by option name."""
+        chosen: dict[str, OptionValue] = {name: action.isChecked() for name, action in self._switches.items()}
+        for name, choices in self._choices.items():
+            chosen[name] = next(value for value, action in choices.items() if action.isChecked())
+        return chosen
+
+    def choose(self, options: dict[str, OptionValue]) -> None:
+        """Choose by option name, as a click would; what the menu does not offer is left out."""
+        for name, value in options.items():
+            if name in self._switches and isinstance(value, bool):
+                self._switches[name].setChecked(value)
+            action = self._choices.get(name, {}).get(float(value))
+            if action is not None and not action.isChecked():
+                action.trigger()
+
+    def show_views(self, views: dict[str, FlyTo], forget: Callable[[str], None]) -> None:
+        """Offer the kept views.
+
+        Args:
+            views: the flight to each, by name.
+            forget: called with the name of a view that is not wanted any more.
+        """
+        self.kept_views.clear()
+        for number, (name, flight) in enumerate(views.items(), start=1):
+            action = self.kept_views.addAction(name)
+            if number <= NUMBERED_VIEWS:
+                action.setShortcut(QKeySequence(f"Ctrl+{number}"))
+            action.triggered.connect(lambda _on, flight=flight: self._dispatch(flight))
+        if views:
+            self.kept_views.addSeparator()
+            forgetting = self.kept_views.addMenu("Forget")
+            for name in views:
+                forgetting.addAction(name).triggered.connect(lambda _on, name=name: forget(name))
+        self.kept_views.setEnabled(bool(views))
+
+    def _action(self, text: str, shortcut: str | None, slot: Callable[[], object]) -> QAction:
+        action = self.addAction(text)
+        if shortcut is not None:
+            action.setShortcut(QKeySequence(shortcut))
+        action.triggered.connect(lambda: slot())
+        return action
+
+    def _switch(self, text: str, option: str, shortcut: str | None) -> None:
+        action = self._action(text, shortcut, lambda: None)
+        action.setCheckable(True)
+        action.toggled.connect(lambda on: self._dispatch(SetOption(option, on)))
+        self._switches[option] = action
+
+    def _choice(
+        self,
+        text: str,
+        option: str,
+        values: tuple[float, ...],
+        initial: float,
+        label: Callable[[float], str],
+    ) -> None:
+        menu = self.addMenu(text)
+        group = QActionGroup(menu)
+        self._choices[option] = {}
+        for value in values:
+            action = menu.addAction(label(value))
+            action.setCheckable(True)
+            action.setChecked(value == initial)
+            action.triggered.connect(lambda _on, value=value: self._dispatch(SetOption(option, value)))
+            group.addAction(action)
+            self._choices[option][value] = action
