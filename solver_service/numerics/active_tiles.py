@@ -19,20 +19,17 @@ class ActiveTiles:
     Args:
         store: rasters of the run.
         depth_film: depth [m] that does not move by itself.
-        forced: cells that may get water from outside, [nrows, ncols]; their tiles and those
-            around them are always active.
+        is_wet_lively: whether water deeper than the film never sleeps, as where the ground drinks it.
     """
 
-    def __init__(self, store: FieldStore, depth_film: float, forced: npt.NDArray[np.bool_]) -> None:
+    def __init__(self, store: FieldStore, depth_film: float, is_wet_lively: bool = False) -> None:
         self._store = store
         self._depth_film = depth_film
+        self._is_wet_lively = int(is_wet_lively)
         self.rows = -(-store.nrows // TILE)
         self.cols = -(-store.ncols // TILE)
         count = self.rows * self.cols
-        rows, cols = np.nonzero(forced)
-        forced_tiles = np.zeros(count, np.int32)
-        forced_tiles[(rows // TILE) * self.cols + cols // TILE] = 1
-        self._forced = wp.array(forced_tiles, dtype=wp.int32, device=store.device)
+        self._forced = wp.zeros(count, dtype=wp.int32, device=store.device)
         self._quadrants = wp.zeros(count, dtype=wp.int32, device=store.device)
         self._tile_wave = wp.zeros(count, dtype=wp.float32, device=store.device)
         self.rest_wave = wp.zeros(2, dtype=wp.float32, device=store.device)
@@ -40,6 +37,13 @@ class ActiveTiles:
         self.active = wp.zeros(count, dtype=wp.int32, device=store.device)
         self.tiles = wp.zeros(count, dtype=wp.int32, device=store.device)
         self.count = wp.zeros(1, dtype=wp.int32, device=store.device)
+
+    def keep_awake(self, cells: npt.NDArray[np.bool_]) -> None:
+        """Let the tiles of some cells, [nrows, ncols], and those around them never sleep."""
+        rows, cols = np.nonzero(cells)
+        forced = np.zeros(self.rows * self.cols, np.int32)
+        forced[(rows // TILE) * self.cols + cols // TILE] = 1
+        self._forced.assign(forced)
 
     def begin_interval(self) -> None:
         """Let the next list depend on the present state alone."""
@@ -57,6 +61,7 @@ class ActiveTiles:
                     *state,
                     fields.h_out,
                     self._depth_film,
+                    self._is_wet_lively,
                     store.nrows,
                     store.ncols,
                     self.cols,

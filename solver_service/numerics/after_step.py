@@ -5,24 +5,33 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from solver_service.numerics.active_tiles import ActiveTiles
 from solver_service.numerics.fields import FieldStore
 from solver_service.numerics.forcing import Forcing
+from solver_service.numerics.infiltration import GroundUptake
 from solver_service.numerics.model import FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.step_part import StepPart
 
 
-def parts_of(model: FloodModel, params: SolverParams, store: FieldStore) -> tuple[StepPart, ...]:
+def parts_of(
+    model: FloodModel, params: SolverParams, store: FieldStore, tiles: ActiveTiles
+) -> tuple[StepPart, ...]:
     """The parts that the model asks for: structures, then sources and rain, then infiltration.
 
     Args:
         model: what does not move.
         params: scheme and tuning.
         store: rasters of the run.
+        tiles: the tiles that are computed; with infiltration every wet one.
     """
     parts: list[StepPart] = []
     if Forcing.is_needed(model):
         parts.append(Forcing(model, params.cfl, store.device))
+    if model.infiltration is not None:
+        parts.append(
+            GroundUptake(model.infiltration, store, tiles, params.depth_film, params.depth_dry, model.dx)
+        )
     return tuple(parts)
 
 

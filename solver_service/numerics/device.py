@@ -22,6 +22,7 @@ KERNEL_FILES = (
     "forcing_kernels",
     "gauge_kernels",
     "ghost_kernels",
+    "infiltration_kernels",
     "row_kernels",
     "step_kernels",
     "tile_kernels",

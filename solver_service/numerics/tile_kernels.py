@@ -32,6 +32,7 @@ def classify_tiles(
     v: wp.array2d(dtype=wp.float32),
     h_before: wp.array2d(dtype=wp.float32),
     depth_film: float,
+    is_wet_lively: int,
     nrows: int,
     ncols: int,
     tile_cols: int,
@@ -51,6 +52,7 @@ def classify_tiles(
         v: velocity [m/s], padded.
         h_before: depth a step ago [m], padded.
         depth_film: depth that does not move by itself [m].
+        is_wet_lively: 1 where water deeper than that never sleeps.
         nrows: grid rows.
         ncols: grid columns.
         tile_cols: tiles in a row of tiles.
@@ -69,6 +71,7 @@ def classify_tiles(
         is_first[1] = is_first[0]
     found = int(0)
     first = is_first[0]
+    wet = wp.max(first, is_wet_lively)
     if forced[tile] == 1:
         found = EVERY_QUADRANT
     elif active[tile] == 1 or first == 1:
@@ -85,7 +88,7 @@ def classify_tiles(
                 j = int(j0)
                 while j < j1 and lively == 0:
                     if h[i, j] > depth_film:
-                        if first == 1 or u[i, j] != 0.0 or v[i, j] != 0.0 or h[i, j] != h_before[i, j]:
+                        if wet == 1 or u[i, j] != 0.0 or v[i, j] != 0.0 or h[i, j] != h_before[i, j]:
                             lively = 1
                     j += 1
                 i += 1

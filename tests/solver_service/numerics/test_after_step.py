@@ -3,6 +3,7 @@
 import numpy as np
 
 from solver_service.numerics import FloodModel, SolverParams, Source
+from solver_service.numerics.active_tiles import ActiveTiles
 from solver_service.numerics.after_step import changeable_cells, parts_of
 from solver_service.numerics.fields import FieldStore
 from solver_service.numerics.forcing import Forcing
@@ -12,7 +13,8 @@ BED = np.zeros((6, 8), np.float32)
 
 
 def parts(model):
-    return parts_of(model, SolverParams(), FieldStore(*model.shape, "cpu"))
+    store = FieldStore(*model.shape, "cpu")
+    return parts_of(model, SolverParams(), store, ActiveTiles(store, 1e-5))
 
 
 def test_a_bare_model_has_no_parts():

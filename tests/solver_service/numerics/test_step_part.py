@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from solver_service.numerics import SolverParams
+from solver_service.numerics.active_tiles import ActiveTiles
 from solver_service.numerics.after_step import parts_of
 from solver_service.numerics.fields import FieldStore
 from tests.solver_service.numerics.floods import full_model
@@ -15,7 +16,8 @@ MODEL = full_model()
 
 @pytest.fixture
 def parts():
-    return parts_of(MODEL, SolverParams(), FieldStore(*MODEL.shape, "cpu"))
+    store = FieldStore(*MODEL.shape, "cpu")
+    return parts_of(MODEL, SolverParams(), store, ActiveTiles(store, 1e-5))
 
 
 def test_no_two_parts_use_the_same_array_name(parts):
