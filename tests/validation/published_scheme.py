@@ -49,12 +49,8 @@ def _hll(hl: Array, ul: Array, vl: Array, hr: Array, ur: Array, vr: Array) -> tu
     )
 
 
-def _rate_along_x(h: Array, u: Array, v: Array, z: Array, dx: float) -> tuple[Array, Array, Array]:
-    """Rates of h, hu and hv from the fluxes along the second axis."""
-    mirror = ((0, 0), (2, 2))
-    h, u, v, z = (np.pad(q, mirror, mode="symmetric") for q in (h, u, v, z))
-    u[:, :2] *= -1.0
-    u[:, -2:] *= -1.0
+def rate_along_x(h: Array, u: Array, v: Array, z: Array, dx: float | Array) -> tuple[Array, Array, Array]:
+    """Rates of h, hu and hv from the fluxes along the second axis, on which two ghosts stand at each end."""
     dh, dw, du, dv = (0.5 * _slope(q) for q in (h, h + z, u, v))
     h, u, v, z = (q[:, 1:-1] for q in (h, u, v, z))
     dz = dw - dh
@@ -76,20 +72,43 @@ def _rate_along_x(h: Array, u: Array, v: Array, z: Array, dx: float) -> tuple[Ar
     )
 
 
-def simulate(bed: Array, dx: float, h: Array, u: Array, v: Array, until: float) -> tuple[Array, Array, Array]:
+def _between_walls(h: Array, u: Array, v: Array, z: Array, dx: float) -> tuple[Array, Array, Array]:
+    """The rates with ghosts that mirror the water."""
+    h, u, v, z = (np.pad(q, ((0, 0), (2, 2)), mode="symmetric") for q in (h, u, v, z))
+    u[:, :2] *= -1.0
+    u[:, -2:] *= -1.0
+    return rate_along_x(h, u, v, z, dx)
+
+
+def dragged(state: Array, u: Array, v: Array, drag: float | Array, dt: float | Array) -> Array:
+    """Depth and discharge after Manning friction with ``drag`` g n^2, at the velocity of before the step."""
+    slowing = 1.0 + dt * drag * np.hypot(u, v) * np.maximum(state[0], DEPTH_DRY) ** (-4.0 / 3.0)
+    return state / np.array([np.ones(slowing.shape), slowing, slowing])
+
+
+def velocity(h: Array, q: Array) -> Array:
+    """Velocity [m/s] from depth and discharge; none where it is dry."""
+    return np.where(h > DEPTH_DRY, q / np.maximum(h, DEPTH_DRY), 0.0)
+
+
+def positive(state: Array) -> Array:
+    """Depth and discharge without negative depths."""
+    film = np.array([np.maximum(state[0], 0.0), 0.0 * state[0], 0.0 * state[0]])
+    return np.where(state[0] > DEPTH_DRY, state, film)
+
+
+def simulate(
+    bed: Array, dx: float, h: Array, u: Array, v: Array, until: float, manning_n: float = 0.0
+) -> tuple[Array, Array, Array]:
     """Advance depth [m] and velocity [m/s] on cells of ``dx`` [m] to the time ``until`` [s]."""
+    drag = GRAVITY * manning_n**2
 
-    def velocity(h: Array, q: Array) -> Array:
-        return np.where(h > DEPTH_DRY, q / np.maximum(h, DEPTH_DRY), 0.0)
-
-    def rate(state: Array) -> Array:
+    def step(state: Array, dt: float) -> Array:
         h, u, v = state[0], velocity(state[0], state[1]), velocity(state[0], state[2])
-        mass, along, across = _rate_along_x(h, u, v, bed, dx)
-        mass_y, along_y, across_y = (q.T for q in _rate_along_x(h.T, v.T, u.T, bed.T, dx))
-        return np.array([mass + mass_y, along + across_y, across + along_y])
-
-    def positive(state: Array) -> Array:
-        return np.where(state[0] > DEPTH_DRY, state, np.array([np.maximum(state[0], 0.0), 0 * h, 0 * h]))
+        mass, along, across = _between_walls(h, u, v, bed, dx)
+        mass_y, along_y, across_y = (q.T for q in _between_walls(h.T, v.T, u.T, bed.T, dx))
+        moved = positive(state + dt * np.array([mass + mass_y, along + across_y, across + along_y]))
+        return dragged(moved, u, v, drag, dt) if drag else moved
 
     state, time = np.array([h, h * u, h * v], dtype=np.float64), 0.0
     while time < until:
@@ -97,7 +116,6 @@ def simulate(bed: Array, dx: float, h: Array, u: Array, v: Array, until: float) 
             float((np.abs(velocity(state[0], q)) + np.sqrt(GRAVITY * state[0])).max()) for q in state[1:]
         )
         dt = min(CFL * dx / fastest, until - time)
-        first = positive(state + dt * rate(state))
-        state = positive(0.5 * (state + first + dt * rate(first)))
+        state = positive(0.5 * (state + step(step(state, dt), dt)))
         time += dt
     return state[0], velocity(state[0], state[1]), velocity(state[0], state[2])

@@ -51,7 +51,7 @@ def solve(solution, grid: Grid, until: float, **params) -> State:
     """Start from an exact solution at time 0 and return depth and velocity at ``until`` [s] in float64."""
     x, y = grid.centres
     h, u, v = (q.astype(np.float32) for q in solution.state(x, y, 0.0))
-    solver = make_solver(solution.bed(x, y), grid.dx, **params)
+    solver = make_solver(solution.bed(x, y), grid.dx, getattr(solution, "manning_n", 0.0), **params)
     solver.set_water(h, u, v)
     solver.advance_to(until)
     u, v = solver.velocity()
@@ -61,7 +61,10 @@ def solve(solution, grid: Grid, until: float, **params) -> State:
 def solve_published(solution, grid: Grid, until: float) -> State:
     """The same run with the published scheme."""
     x, y = grid.centres
-    return published_scheme.simulate(solution.bed(x, y), grid.dx, *solution.state(x, y, 0.0), until)
+    manning_n = getattr(solution, "manning_n", 0.0)
+    return published_scheme.simulate(
+        solution.bed(x, y), grid.dx, *solution.state(x, y, 0.0), until, manning_n=manning_n
+    )
 
 
 def discharge(state: State) -> Array:

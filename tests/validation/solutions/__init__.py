@@ -1,8 +1,8 @@
 """Exact solutions of the shallow-water equations in float64, one a file.
 
 Every solution is a frozen dataclass with ``bed(x, y)`` [m] and ``state(x, y, time) -> (h, u, v)`` [m, m/s,
-m/s] on arrays of any shape. They are verified on their own in ``tests/validation/test_solutions.py`` and ``test_channel_solutions.py`` before
-they judge the solver.
+m/s] on arrays of any shape. They are verified on their own in ``tests/validation/test_solutions.py`` and
+``test_channel_solutions.py`` before they judge the solver.
 """
 
 from tests.validation.solutions.bump import Bump

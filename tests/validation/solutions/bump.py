@@ -1,7 +1,7 @@
-"""Steady flow over a parabolic bump without friction: subcritical, transcritical, transcritical with a jump.
+"""Steady flow over a bump without friction: subcritical, transcritical, transcritical with a jump.
 
-Source: Goutal and Maurel (1997), "Proceedings of the 2nd Workshop on Dam-Break Wave Simulation", EDF; Delestre
-et al. (2013), SWASHES, sections 3.1.3 to 3.1.5.
+Source: Goutal and Maurel (1997), "Proceedings of the 2nd Workshop on Dam-Break Wave Simulation", EDF;
+Delestre et al. (2013), SWASHES, sections 3.1.3 to 3.1.5.
 
 The bed is z_b = 0.2 - 0.05 (x - 10)^2 for 8 < x < 12, else 0, in a channel of 25 m. The discharge q is the
 same everywhere and the head E = z_b + h + q^2 / (2 g h^2) is kept between jumps, so that the depth is a root
@@ -27,7 +27,7 @@ CREST = 10.0
 
 @dataclass(frozen=True)
 class Bump:
-    """Unit ``discharge`` [m2/s]; ``depth_out`` [m] stands at the eastern end unless the flow leaves it fast."""
+    """Unit ``discharge`` [m2/s]; ``depth_out`` [m] at the eastern end, unless the flow leaves it fast."""
 
     regime: Literal["subcritical", "transcritical", "jump"]
     discharge: float
@@ -49,7 +49,7 @@ class Bump:
         return np.maximum(0.2 - 0.05 * (x - CREST) ** 2, 0.0) + 0.0 * y
 
     def _depth(self, energy: float, x: Array, fast: bool) -> Array:
-        """The sub- or supercritical depth [m] with the head ``energy`` [m], by the angle that is trisected."""
+        """The sub- or supercritical depth [m] with the head ``energy`` [m], by trisecting an angle."""
         above = energy - self.bed(x, 0.0 * x)
         angle = np.arccos(np.clip(1.0 - 6.75 * self.discharge**2 / (self.gravity * above**3), -1.0, 1.0))
         return above / 3.0 * (1.0 + 2.0 * np.cos((angle - 2.0 * np.pi * fast) / 3.0))

@@ -1,9 +1,9 @@
 """Dam break on a dry, flat bed with Manning friction, to the first order of the friction.
 
-Source: Dressler (1952), "Hydraulic resistance effect upon the dam-break functions", J. Res. Natl. Bur. Stand.
-49(3), 217-225; Delestre et al. (2013), SWASHES, section 4.1.3, both with Chezy's friction. Here the same
-expansion is made for friction R u^2 / c^p, of which Chezy is p = 2, R = g^2 / C^2 and Manning p = 8/3, R = g^(7/3)
-n^2.
+Source: Dressler (1952), "Hydraulic resistance effect upon the dam-break functions", J. Res. Natl. Bur.
+Stand. 49(3), 217-225; Delestre et al. (2013), SWASHES, section 4.1.3, both with Chezy's friction. Here the
+same expansion is made for friction R u^2 / c^p, of which Chezy is p = 2, R = g^2 / C^2 and Manning p = 8/3, R
+= g^(7/3) n^2.
 
 With c = sqrt(g h), c_l = sqrt(g h_left), z = (2 - x / (c_l t)) / 3, Ritter's solution is c = c_l z, u = 2 c_l
 (1 - z), and its correction is of the order delta = R t c_l^(1 - p)::

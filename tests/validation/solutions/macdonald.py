@@ -32,7 +32,7 @@ PANELS = 2000
 
 @dataclass(frozen=True)
 class MacDonald:
-    """Depth ``profile`` [m] of x, and ``beyond`` the ``jump`` [m] another one; ``discharge`` [m2/s] enters."""
+    """Depth ``profile`` [m] of x, ``beyond`` the ``jump`` [m] another one; ``discharge`` [m2/s] enters."""
 
     length: float
     discharge: float
@@ -146,5 +146,5 @@ CHANNELS = {
     "subcritical with rain": MacDonald(1000.0, 1.0, 0.033, _slow, rain=0.001),
     "supercritical with rain": MacDonald(1000.0, 2.5, 0.04, _fast, rain=0.001),
 }
-"""The channels of SWASHES, sections 3.2.1 to 3.2.3 and 3.3 (where two profiles meet without a jump, ``jump`` is
-the place where one takes over)."""
+"""The channels of SWASHES, sections 3.2.1 to 3.2.3 and 3.3 (where two profiles meet without a jump, ``jump``
+is the place where one takes over)."""

@@ -1,8 +1,8 @@
 """Rain on a long plane, with steady infiltration: a kinematic wave.
 
-Source: Henderson and Wooding (1964), J. Geophys. Res. 69(8), 1531-1540; Woolhiser and Liggett (1967), Water Resour.
-Res. 3(3), 753-771 (when the kinematic wave is good enough); Giraldez and Woolhiser (1996), Water Resour. Res.
-32(8), 2453-2465 (with infiltration, here at a constant rate).
+Source: Henderson and Wooding (1964), J. Geophys. Res. 69(8), 1531-1540; Woolhiser and Liggett (1967), Water
+Resour. Res. 3(3), 753-771 (when the kinematic wave is good enough); Giraldez and Woolhiser (1996), Water
+Resour. Res. 32(8), 2453-2465 (with infiltration, here at a constant rate).
 
 Where the bed slope S alone balances friction, q = alpha h^m with alpha = sqrt(S) / n and m = 5/3, and ::
 
@@ -24,7 +24,7 @@ POWER = 5.0 / 3.0
 
 @dataclass(frozen=True)
 class RainOnPlane:
-    """A plane from the divide at x = 0 down to ``length`` [m]; ``rain`` [m/s] falls until ``rain_end`` [s]."""
+    """A plane from the divide at 0 down to ``length`` [m]; ``rain`` [m/s] falls until ``rain_end`` [s]."""
 
     length: float
     slope: float

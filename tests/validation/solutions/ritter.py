@@ -9,7 +9,8 @@ With c = sqrt(g h_left) and xi = (x - x_dam) / t the solution is a single rarefa
     -c < xi < 2 c      h = (2 c - xi)^2 / (9 g)       u = 2 (xi + c) / 3
     xi >= 2 c          h = 0                          u = 0
 
-``angle`` turns the direction of the flow from the x axis towards the y axis; the dam passes through (x_dam, 0).
+``angle`` turns the direction of the flow from the x axis towards the y axis; the dam passes through (x_dam,
+0).
 """
 
 from dataclasses import dataclass
