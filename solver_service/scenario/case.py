@@ -115,6 +115,7 @@ class Case:
         gauges: places recorded.
         sections: lines recorded.
         nodata_count: cells of the terrain without data, walled or filled.
+        warnings: sentences about what is allowed in the case and yet odd.
         imagery: picture to lay on the terrain; None where there is none.
         demo: what a tour may show; None where nothing is said.
     """
@@ -136,6 +137,7 @@ class Case:
     gauges: tuple[Gauge, ...]
     sections: tuple[Section, ...]
     nodata_count: int
+    warnings: tuple[str, ...] = ()
     imagery: Path | None = None
     demo: DemoScript | None = None
 

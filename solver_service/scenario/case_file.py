@@ -5,23 +5,29 @@ from __future__ import annotations
 import re
 import tomllib
 from datetime import datetime
-from typing import Any, Literal, cast
+from typing import Any
 
 from protocol import GridGeometry
 from protocol.errors import GridError
 from solver_service.errors import CaseError, ModelError, TerrainError
-from solver_service.numerics import FloodModel, SolverParams
+from solver_service.numerics import FloodModel
+from solver_service.scenario.boundaries import read_boundaries
 from solver_service.scenario.case import Case
 from solver_service.scenario.case_folder import CaseFolder
-from solver_service.scenario.ground import read_ground, read_ground_keys, read_roughness
+from solver_service.scenario.demo import read_demo
+from solver_service.scenario.ground import GroundKeys, read_ground, read_ground_keys
+from solver_service.scenario.infiltration import read_infiltration
+from solver_service.scenario.initial import read_initial
+from solver_service.scenario.inputs import Inputs
 from solver_service.scenario.keys import NOT_YET
-from solver_service.scenario.places import gauge_cells, read_demo, read_gauges, read_sections
+from solver_service.scenario.places import gauge_cells, read_gauges, read_sections
+from solver_service.scenario.rain import read_rain
+from solver_service.scenario.roughness import read_roughness
+from solver_service.scenario.run_settings import read_params, read_times
+from solver_service.scenario.sources import read_sources
 from solver_service.scenario.table import Table
-from solver_service.scenario.water import read_boundaries, read_initial, read_rain, read_sources
 
 NAME = re.compile(r"[A-Za-z0-9_-]{1,64}\Z")
-MAX_DURATION = 1e9
-MAX_FRAMES = 1_000_000
 
 
 def read_top(folder: CaseFolder) -> Table:
@@ -67,77 +73,62 @@ def read_case(folder: CaseFolder, cell_size: float | None = None) -> Case:
     """
     top = read_top(folder)
     about = need(top, "case")
-    name = about.text("name", longest=64)
-    if not NAME.match(name):
+    if not NAME.match(about.text("name", longest=64)):
         raise about.wrong("name", "1 to 64 letters, digits, '_' and '-' are allowed")
     start_time = _start_time(about)
     run = need(top, "run")
-    duration, output_interval = read_times(run)
+    duration, _ = read_times(run)
     keys = read_ground_keys(need(top, "terrain"), about, cell_size)
-    roughness = need(top, "roughness")
+    need(top, "roughness")
     try:
-        terrain = read_ground(keys, folder)
-        initial = top.table("initial")
-        manning_n = read_roughness(roughness, folder, terrain.grid)
-        initial_h = read_initial(initial or Table(top.file, "initial", {}), folder, terrain)
-        sources = read_sources(top.tables("source"), folder, terrain, start_time)
-        gauges = read_gauges(top, folder, terrain.grid)
-        sections = read_sections(top.tables("section"), terrain.grid)
-        model = FloodModel(
-            dx=terrain.grid.dx,
-            z_b=terrain.z_b,
-            manning_n=manning_n,
-            boundaries=read_boundaries(top.tables("boundary"), terrain),
-            sources=sources,
-            rain=read_rain(top.table("rain"), folder, terrain.z_b.shape, start_time),
-            blocked=terrain.wall if terrain.wall.any() else None,
-        )
-        params = _read_params(run, gauge_cells(gauges, sections, terrain.grid))
+        inputs = Inputs(folder, read_ground(keys, folder), start_time, duration)
+        return _read_below_ground(top, keys, inputs)
     except (ModelError, GridError) as error:
         raise CaseError(f"{top.file}: {error}") from error
     except TerrainError as error:
         message = str(error)
         raise TerrainError(message if message.startswith(top.file) else f"{top.file}: {message}") from error
-    imagery = None
-    if keys.table.has("imagery"):
-        imagery = folder.find(keys.table.text("imagery"), f"{top.file}: [terrain] imagery")
+
+
+def _read_below_ground(top: Table, keys: GroundKeys, inputs: Inputs) -> Case:
+    """Everything that lies on the ground, and the case that it makes."""
+    about, run, terrain, folder = need(top, "case"), need(top, "run"), inputs.terrain, inputs.folder
+    duration, output_interval = read_times(run)
+    gauges = read_gauges(top, folder, terrain.grid)
+    sections = read_sections(top.tables("section"), terrain.grid)
+    model = FloodModel(
+        dx=terrain.grid.dx,
+        z_b=terrain.z_b,
+        manning_n=read_roughness(need(top, "roughness"), inputs),
+        boundaries=read_boundaries(top.tables("boundary"), inputs),
+        sources=read_sources(top.tables("source"), inputs),
+        rain=read_rain(top.table("rain"), inputs),
+        infiltration=read_infiltration(top.table("infiltration"), inputs),
+        blocked=terrain.wall if terrain.wall.any() else None,
+    )
+    imagery = inputs.file(keys.table, "imagery") if keys.table.has("imagery") else None
     return Case(
-        name=name,
-        title=about.text("title", name, longest=200),
+        name=about.text("name"),
+        title=about.text("title", about.text("name"), longest=200),
         description=about.text("description", ""),
         hypothetical=about.flag("hypothetical"),
         source=about.text("source", ""),
         licence=about.text("licence", ""),
-        start_time=start_time.isoformat() if start_time else None,
+        start_time=inputs.start_time.isoformat() if inputs.start_time else None,
         grid=terrain.grid,
         z_b=terrain.z_b,
         model=model,
-        initial_h=initial_h,
+        initial_h=read_initial(top.table("initial") or Table(top.file, "initial", {}), inputs),
         duration=duration,
         output_interval=output_interval,
-        params=params,
+        params=read_params(run, gauge_cells(gauges, sections, terrain.grid)),
         gauges=gauges,
         sections=sections,
         nodata_count=terrain.nodata_count,
+        warnings=tuple(inputs.warnings),
         imagery=None if folder.temporary else imagery,
         demo=read_demo(top.table("demo"), terrain.grid),
     )
-
-
-def read_times(run: Table) -> tuple[float, float]:
-    """Duration and output interval [s].
-
-    Raises:
-        CaseError: one is missing or out of range.
-    """
-    duration = run.real(
-        "duration", f"a time in s above 0, up to {MAX_DURATION:g},", 0.0, MAX_DURATION, above=True
-    )
-    allowed = (
-        f"a time in s above 0, up to the duration of {duration:g}, that makes at most {MAX_FRAMES} frames,"
-    )
-    interval = run.real("output_interval", allowed, duration / MAX_FRAMES, duration)
-    return duration, interval
 
 
 def planned_grid(folder: CaseFolder) -> GridGeometry | None:
@@ -154,37 +145,6 @@ def planned_grid(folder: CaseFolder) -> GridGeometry | None:
         dx=keys.cell_size,
         x0=xmin,
         y0=ymin,
-    )
-
-
-def _read_params(run: Table, gauges: tuple[tuple[float, float], ...]) -> SolverParams:
-    default = SolverParams()
-    order = run.values.get("order", default.order)
-    if order not in (1, 2) or isinstance(order, bool):
-        raise run.wrong("order", "1 or 2 is allowed")
-    depth_dry = run.real(
-        "depth_dry", "a depth in m from 0.000001 to 0.1", 1e-6, 0.1, default=default.depth_dry
-    )
-    return SolverParams(
-        cfl=run.real(
-            "cfl", "a Courant number above 0, up to 0.5,", 0.0, 0.5, default=default.cfl, above=True
-        ),
-        order=cast(Literal[1, 2], order),
-        riemann=cast(Literal["hllc", "hll"], run.choice("riemann", ("hllc", "hll"), default.riemann)),
-        depth_dry=depth_dry,
-        depth_film=min(default.depth_film, depth_dry),
-        depth_arrival=run.real(
-            "depth_arrival", "a depth in m above 0", 0.0, 10.0, default=default.depth_arrival, above=True
-        ),
-        gauges=gauges,
-        gauge_interval=run.real(
-            "gauge_interval",
-            "a time in s above 0",
-            0.0,
-            MAX_DURATION,
-            default=default.gauge_interval,
-            above=True,
-        ),
     )
 
 

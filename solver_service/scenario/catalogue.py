@@ -11,8 +11,9 @@ from protocol import CaseSummary
 from solver_service.errors import CaseError
 from solver_service.scenario import malpasset
 from solver_service.scenario.case import Case
-from solver_service.scenario.case_file import need, planned_grid, read_case, read_times, read_top
+from solver_service.scenario.case_file import need, planned_grid, read_case, read_top
 from solver_service.scenario.case_folder import ARCHIVE_SUFFIX, CASE_FILE, CaseFolder, open_case
+from solver_service.scenario.run_settings import read_times
 
 EMBEDDED = Path(__file__).parents[1] / "cases"
 

@@ -1,39 +1,30 @@
-"""The ground of a case: [terrain], [[terrain.raise]] and [roughness]."""
+"""[terrain] and [[terrain.raise]]: the ground of a case."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from protocol import GridGeometry
-from solver_service.errors import CaseError, TerrainError
+from solver_service.errors import CaseError
 from solver_service.scenario.case_folder import CaseFolder
+from solver_service.scenario.inputs import covered_cells
 from solver_service.scenario.table import Table
 from solver_service.terrain import (
     LOCAL,
     Raster,
-    Ring,
     Terrain,
-    cells_inside,
     centre_of,
     check_metres,
-    check_ring,
     crop,
     is_geographic,
     make_terrain,
     read_dem,
-    read_polygons,
     reproject,
     resample,
     same_crs,
-    sample,
 )
-
-MANNING_MAX = 1.0
 
 
 @dataclass(frozen=True)
@@ -171,84 +162,11 @@ def _short_name(crs: str | None) -> str | None:
     return f"EPSG:{code}" if code else str(system.name)
 
 
-def read_area(table: Table, folder: CaseFolder) -> list[list[Ring]]:
-    """Polygons given in place (`polygon`) or by a file (`polygons`).
-
-    Raises:
-        CaseError: both or none are given, or one is not valid.
-    """
-    if table.has("polygon") == table.has("polygons"):
-        raise table.wrong("polygons", "either 'polygons' (a file) or 'polygon' (points) is needed")
-    if table.has("polygons"):
-        return read_polygons(folder.find(table.text("polygons"), f"{table.file}: [[{table.name}]] polygons"))
-    try:
-        return [[check_ring(table.points("polygon", 3))]]
-    except ValueError as error:
-        raise table.wrong("polygon", str(error)) from error
-
-
 def _raised(terrain: Terrain, table: Table, folder: CaseFolder) -> Terrain:
     z_b = terrain.z_b
     for item in table.tables("raise"):
         by = item.real("by", "a height in m from -1000 to 1000", -1000.0, 1000.0)
-        inside = cells_inside(read_area(item, folder), terrain.grid)
-        if not inside.any():
-            raise CaseError(
-                f"{item.file}: [[terrain.raise]] number {item.number} covers no cell of the terrain."
-            )
+        inside = covered_cells(item, folder, terrain.grid)
         z_b = z_b.copy()
         z_b[inside] += np.float32(by)
     return Terrain(terrain.grid, z_b, terrain.wall, terrain.nodata_count)
-
-
-def read_roughness(table: Table, folder: CaseFolder, grid: GridGeometry) -> float | NDArray[np.float32]:
-    """Manning's n [s m^(-1/3)]: one number, or one for each cell.
-
-    Raises:
-        CaseError: nothing is given, or a value is out of range.
-    """
-    allowed = f"a Manning roughness from 0 to {MANNING_MAX:g} s m^(-1/3)"
-    key, row0 = table.text("key", "manning_n"), table.choice("row0", ("south", "north"), "south")
-    if table.has("raster"):
-        path = folder.find(table.text("raster"), f"{table.file}: [roughness] raster")
-        values = read_on_grid(path, table, grid, key, row0, "nearest")
-        bad = ~((values >= 0.0) & (values <= MANNING_MAX))
-        if bad.any():
-            row, col = np.argwhere(bad)[0].tolist()
-            raise table.wrong(
-                "raster", f"its cell (row {row}, column {col}) holds {values[row, col]:g}; {allowed} is"
-            )
-    else:
-        everywhere = table.real("manning_n", allowed, 0.0, MANNING_MAX)
-        if not table.has("zone"):
-            return everywhere
-        values = np.full(grid.shape, everywhere, np.float32)
-    for zone in table.tables("zone"):
-        values[cells_inside(read_area(zone, folder), grid)] = zone.real(
-            "manning_n", allowed, 0.0, MANNING_MAX
-        )
-    return values
-
-
-def read_on_grid(
-    path: Path, table: Table, grid: GridGeometry, key: str, row0: str, kind: Literal["nearest", "linear"]
-) -> NDArray[np.float32]:
-    """A raster file of a case, on the cells of its terrain; NaN where it says nothing.
-
-    Raises:
-        TerrainError: the file is not valid.
-    """
-    raster = read_dem(
-        path,
-        key=key,
-        row0=row0,
-        cell_size=grid.dx,
-        origin=(grid.x0, grid.y0),
-    )
-    if raster.crs is not None and not same_crs(grid.crs, raster.crs, f"{table.file}: [{table.name}]"):
-        raise TerrainError(
-            f"{table.file}: [{table.name}] raster is not in '{grid.crs}', the system of the terrain."
-        )
-    coarser = grid.dx > 1.5 * raster.dx
-    chosen: Literal["nearest", "linear", "average"] = "average" if coarser and kind == "linear" else kind
-    return sample(raster, grid.x0, grid.y0, grid.dx, grid.nrows, grid.ncols, chosen).astype(np.float32)

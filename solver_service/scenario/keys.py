@@ -2,6 +2,18 @@
 
 from __future__ import annotations
 
+INFILTRATION = (
+    "rate",
+    "capacity",
+    "rate_initial",
+    "rate_final",
+    "decay",
+    "conductivity",
+    "suction",
+    "deficit",
+)
+"""Numbers of the laws of infiltration."""
+
 KEYS: dict[str, frozenset[str]] = {
     "": frozenset({"gauges"}),
     "case": frozenset(
@@ -34,13 +46,17 @@ KEYS: dict[str, frozenset[str]] = {
         }
     ),
     "terrain.raise": frozenset({"polygons", "polygon", "by"}),
-    "roughness": frozenset({"manning_n", "raster", "key", "row0", "zone"}),
+    "roughness": frozenset({"manning_n", "raster", "key", "row0", "classes", "table", "zone"}),
     "roughness.zone": frozenset({"polygons", "polygon", "manning_n"}),
-    "initial": frozenset({"depth", "depth_key", "row0", "level"}),
-    "initial.level": frozenset({"level", "polygon", "side_of_line", "connected_to", "everywhere_below"}),
-    "boundary": frozenset({"edge", "from", "to", "kind"}),
-    "source": frozenset({"at", "radius", "discharge", "series"}),
-    "rain": frozenset({"series", "rate"}),
+    "initial": frozenset({"depth", "depth_key", "surface", "surface_key", "row0", "level"}),
+    "initial.level": frozenset(
+        {"level", "depth", "polygons", "polygon", "side_of_line", "connected_to", "everywhere_below"}
+    ),
+    "boundary": frozenset({"id", "edge", "from", "to", "kind", "level", "discharge", "slope", "series"}),
+    "source": frozenset({"id", "at", "radius", "discharge", "series"}),
+    "rain": frozenset({"series", "rate", "unit", "interpolation", "key", "row0"}),
+    "infiltration": frozenset({"model", *INFILTRATION, "classes", "table", "row0", "zone"}),
+    "infiltration.zone": frozenset({"polygons", "polygon", *INFILTRATION}),
     "gauge": frozenset({"id", "at"}),
     "section": frozenset({"id", "line"}),
     "run": frozenset(
@@ -65,6 +81,7 @@ ARRAYS = frozenset(
         "terrain.raise",
         "roughness.zone",
         "initial.level",
+        "infiltration.zone",
         "boundary",
         "source",
         "gauge",
@@ -76,10 +93,8 @@ ARRAYS = frozenset(
 
 NOT_YET: dict[str, str] = {
     "breach": "the supported ways of water are [initial], [[source]], [rain] and open edges",
-    "infiltration": "the supported ways of water are [initial], [[source]], [rain] and open edges",
 }
 """Tables of the case format that this version cannot compute, with what it can."""
 
-BOUNDARY_KINDS = ("wall", "open")
-BOUNDARY_KINDS_NOT_YET = ("stage", "discharge", "normal_depth")
-"""Kinds of the case format that this version cannot compute."""
+BOUNDARY_KINDS = ("wall", "open", "stage", "discharge", "normal_depth")
+"""What an edge may do."""

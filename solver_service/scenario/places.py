@@ -1,14 +1,15 @@
-"""Places of a case that are watched or shown: gauges, sections, and the tour."""
+"""Places that are watched: [[gauge]], the file `gauges`, and [[section]]."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
-from protocol import EditError, EditLine, EditType, GridGeometry, Operation, check_edit
+from protocol import GridGeometry
 from solver_service.errors import CaseError
-from solver_service.scenario.case import DemoScript, Gauge, Section
+from solver_service.scenario.case import Gauge, Section
 from solver_service.scenario.case_folder import CaseFolder
-from solver_service.scenario.series import read_points
+from solver_service.scenario.csv_file import read_csv
 from solver_service.scenario.table import Table
 
 MAX_GAUGES = 10_000
@@ -57,37 +58,6 @@ def read_sections(tables: list[Table], grid: GridGeometry) -> tuple[Section, ...
     return tuple(sections)
 
 
-def read_demo(table: Table | None, grid: GridGeometry) -> DemoScript | None:
-    """The tour of a case; None where nothing is said.
-
-    Raises:
-        CaseError: an edit does not fit the terrain.
-    """
-    if table is None:
-        return None
-    time = table.real("time", "a time in s at or above 0", 0.0, 1e12, default=0.0)
-    target = table.point("target") if table.has("target") else None
-    edits = []
-    for number, item in enumerate(table.tables("edit"), start=1):
-        operation = item.choice("operation", [option.value for option in Operation], "raise")
-        kind = item.choice("type", [option.value for option in EditType], "modulate")
-        try:
-            edit = EditLine(
-                id=f"demo-{number}",
-                vertices=item.points("line", 2),
-                width=item.real("width", "a width in m above 0", 0.0, 1e5, above=True),
-                operation=Operation(operation),
-                type=EditType(kind),
-                magnitude=item.real("magnitude", "a height in m above 0", 0.0, 1e4, above=True),
-                level=item.number_or_none("level", "an elevation in m", -20_000.0, 20_000.0),
-            )
-            check_edit(edit, grid)
-        except (EditError, ValueError) as error:
-            raise CaseError(f"{item.file}: [[demo.edit]] number {number}: {error}") from error
-        edits.append(edit)
-    return DemoScript(time, target, tuple(edits))
-
-
 def gauge_cells(
     gauges: tuple[Gauge, ...], sections: tuple[Section, ...], grid: GridGeometry
 ) -> tuple[tuple[float, float], ...]:
@@ -114,3 +84,17 @@ def _check_inside(file: str, what: str, x: float, y: float, grid: GridGeometry) 
             f"{file}: {what} is at ({x:g}, {y:g}), outside the terrain; x {xmin:g} to {xmax:g} and"
             f" y {ymin:g} to {ymax:g} m are allowed."
         )
+
+
+def read_points(path: Path) -> list[tuple[str, float, float]]:
+    """Named points from a CSV whose header names `id` and x, y (or x_m, y_m).
+
+    Raises:
+        CaseError: naming file, line, and what is allowed.
+    """
+    columns, lines = read_csv(path)
+    x, y = (name if name in columns else f"{name}_m" for name in ("x", "y"))
+    missing = [name for name in ("id", x, y) if name not in columns]
+    if missing:
+        raise CaseError(f"{path.name}: line 1 names no column '{missing[0]}'; id, x, y are needed.")
+    return [(line.cells["id"], line.real(x, -1e9, 1e9), line.real(y, -1e9, 1e9)) for line in lines]

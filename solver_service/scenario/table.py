@@ -37,10 +37,11 @@ class Table:
         allowed |= {table for table in (*KEYS, *NOT_YET) if table and "." not in table} if not name else set()
         for key in values:
             if key not in allowed:
-                raise CaseError(f"{file}: {self._label} has the unknown key '{key}'{_hint(key, allowed)}.")
+                raise CaseError(f"{file}: {self.label} has the unknown key '{key}'{_hint(key, allowed)}.")
 
     @property
-    def _label(self) -> str:
+    def label(self) -> str:
+        """The table in sentences: [name], or [[name]] and its number."""
         if not self.name:
             return "the top of the file"
         return f"[[{self.name}]] number {self.number}" if self.name in ARRAYS else f"[{self.name}]"
@@ -49,11 +50,20 @@ class Table:
         """The error of a key, with its value and what is allowed."""
         value = self.values.get(key, MISSING)
         said = "is missing" if value is MISSING else f"is {_short(value)}"
-        return CaseError(f"{self.file}: {self._label} {key} {said}; {allowed}.")
+        return CaseError(f"{self.file}: {self.label} {key} {said}; {allowed}.")
 
     def has(self, key: str) -> bool:
         """Whether the key is there."""
         return key in self.values
+
+    def only_beside(self, key: str, *others: str) -> None:
+        """Refuse a key that means nothing without one of some others.
+
+        Raises:
+            CaseError: it stands alone.
+        """
+        if key in self.values and not any(other in self.values for other in others):
+            raise self.wrong(key, f"it means something only beside {' or '.join(map(repr, others))}")
 
     def tables(self, key: str) -> list[Table]:
         """The tables of an array below this one; none where it is missing."""

@@ -25,15 +25,6 @@ def test_what_the_case_says_arrives(tmp_path: Path) -> None:
     np.testing.assert_array_equal(case.model.z_b, case.z_b)
 
 
-def test_solver_keys_reach_the_solver(tmp_path: Path) -> None:
-    more = 'cfl = 0.3\norder = 1\nriemann = "hll"\ndepth_dry = 1e-6\ndepth_arrival = 0.1\n'
-
-    params = load_case(write_case(tmp_path, CASE + more)).params
-
-    assert (params.cfl, params.order, params.riemann) == (0.3, 1, "hll")
-    assert (params.depth_dry, params.depth_arrival) == (1e-6, 0.1)
-
-
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -65,7 +56,6 @@ def test_solver_keys_reach_the_solver(tmp_path: Path) -> None:
             "[[breach]]\nline = []\n[run]",
             r"\[breach\] cannot be computed by this version; the supported",
         ),
-        ("[run]", '[infiltration]\nmodel = "constant"\n[run]', r"\[infiltration\] cannot be computed"),
     ],
 )
 def test_a_bad_case_is_told_in_one_sentence(tmp_path: Path, old: str, new: str, message: str) -> None:

@@ -159,19 +159,6 @@ def test_houses_are_raised(tmp_path: Path) -> None:
     assert np.abs(raised[raised < 2.9]).max() < 1e-4
 
 
-def test_roughness_is_one_number_zones_or_a_raster(tmp_path: Path) -> None:
-    west = "[[1000, 2000], [1100, 2000], [1100, 2240], [1000, 2240]]"
-    zone = f"\n[[roughness.zone]]\nmanning_n = 0.1\npolygon = {west}\n"
-    assert load_case(write_case(tmp_path / "a")).model.manning_n == 0.03
-    zoned = load_case(write_case(tmp_path / "b", CASE + zone)).model.manning_n
-    assert (zoned[:, :10] == np.float32(0.1)).all()
-    assert (zoned[:, 10:] == np.float32(0.03)).all()
-
-    write_case(tmp_path / "c", changed("manning_n = 0.03", 'raster = "n.npz"'))
-    np.savez(tmp_path / "c" / "n.npz", manning_n=np.full((ROWS, COLS), 0.05))
-    assert (load_case(tmp_path / "c").model.manning_n == np.float32(0.05)).all()
-
-
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -186,7 +173,7 @@ def test_roughness_is_one_number_zones_or_a_raster(tmp_path: Path) -> None:
             'raster = "n.npz"',
             r"raster is 'n.npz'; its cell \(row 0, column 0\) holds -1; a Manning",
         ),
-        ("manning_n = 0.03", "", r"manning_n is missing"),
+        ("manning_n = 0.03", "", r"\[roughness\] has no value; one of manning_n, raster, classes"),
         ('dem = "bed.npz"', 'dem = "bad.tif"', r"dem is 'bad.tif', which does not exist"),
         ('dem = "bed.npz"', "dem = 5", r"\[terrain\] dem is 5; a text"),
         ('key = "bed"', 'key = "beds"', r"no array 'beds'"),

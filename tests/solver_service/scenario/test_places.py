@@ -4,6 +4,7 @@ import pytest
 
 from solver_service.errors import CaseError
 from solver_service.scenario import load_case
+from solver_service.scenario.places import read_points
 from tests.solver_service.tiny_case import CASE, GAUGES, write_case
 
 
@@ -56,24 +57,23 @@ def test_a_bad_place_is_told(tmp_path: Path, more: str, message: str) -> None:
         load_case(write_case(tmp_path, f"{CASE}\n{more}\n"))
 
 
+def written(folder: Path, text: str) -> Path:
+    path = folder / "points.csv"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("header", ["id,x,y", "id,kind,x_m,y_m"])
+def test_points_are_read_by_the_names_of_their_columns(tmp_path: Path, header: str) -> None:
+    kind = "mark," if "kind" in header else ""
+
+    assert read_points(written(tmp_path, f"{header}\nP1,{kind}1.5,2\n")) == [("P1", 1.5, 2.0)]
+
+
 @pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        (
-            "line = [[1100.0, 2100.0], [1200.0, 2100.0]]\nwidth = 0.0\nmagnitude = 2.0",
-            "width is 0.0; a width in m above 0",
-        ),
-        ("line = [[1100.0, 2100.0], [5.0, 5.0]]\nwidth = 20.0\nmagnitude = 2.0", "outside the terrain"),
-        (
-            'line = [[1100.0, 2100.0], [1200.0, 2100.0]]\nwidth = 20.0\nmagnitude = 2.0\ntype = "replace"',
-            "needs 'level'",
-        ),
-        (
-            'line = [[1100.0, 2100.0], [1200.0, 2100.0]]\nwidth = 20.0\nmagnitude = 2.0\noperation = "dig"',
-            "'raise', 'lower'",
-        ),
-    ],
+    "text",
+    ["id,x\nP1,3\n", "id,x,y\nP1,3\n", "id,x,y\nP1,3,inf\n", "x,y\n1,2\n", "id,x,y\nP1,,2\n", ""],
 )
-def test_a_bad_edit_of_the_tour_is_told(tmp_path: Path, keys: str, message: str) -> None:
-    with pytest.raises(CaseError, match=message):
-        load_case(write_case(tmp_path, f"{CASE}\n[demo]\n[[demo.edit]]\n{keys}\n"))
+def test_what_is_no_point_is_refused_with_its_line(tmp_path: Path, text: str) -> None:
+    with pytest.raises(CaseError, match=r"points.csv: (line [12] |is empty; line 1 )"):
+        read_points(written(tmp_path, text))

@@ -1,0 +1,63 @@
+"""[run]: how long, how often, and how the scheme is tuned."""
+
+from __future__ import annotations
+
+from typing import Literal, cast
+
+from solver_service.numerics import SolverParams
+from solver_service.scenario.table import Table
+
+MAX_DURATION = 1e9
+MAX_FRAMES = 1_000_000
+
+
+def read_times(run: Table) -> tuple[float, float]:
+    """Duration and output interval [s].
+
+    Raises:
+        CaseError: one is missing or out of range.
+    """
+    duration = run.real(
+        "duration", f"a time in s above 0, up to {MAX_DURATION:g},", 0.0, MAX_DURATION, above=True
+    )
+    allowed = (
+        f"a time in s above 0, up to the duration of {duration:g}, that makes at most {MAX_FRAMES} frames,"
+    )
+    interval = run.real("output_interval", allowed, duration / MAX_FRAMES, duration)
+    return duration, interval
+
+
+def read_params(run: Table, gauges: tuple[tuple[float, float], ...]) -> SolverParams:
+    """The tuning of the solver, with the places that it records.
+
+    Raises:
+        CaseError: a key is out of range.
+    """
+    default = SolverParams()
+    order = run.values.get("order", default.order)
+    if order not in (1, 2) or isinstance(order, bool):
+        raise run.wrong("order", "1 or 2 is allowed")
+    depth_dry = run.real(
+        "depth_dry", "a depth in m from 0.000001 to 0.1", 1e-6, 0.1, default=default.depth_dry
+    )
+    return SolverParams(
+        cfl=run.real(
+            "cfl", "a Courant number above 0, up to 0.5,", 0.0, 0.5, default=default.cfl, above=True
+        ),
+        order=cast(Literal[1, 2], order),
+        riemann=cast(Literal["hllc", "hll"], run.choice("riemann", ("hllc", "hll"), default.riemann)),
+        depth_dry=depth_dry,
+        depth_film=min(default.depth_film, depth_dry),
+        depth_arrival=run.real(
+            "depth_arrival", "a depth in m above 0", 0.0, 10.0, default=default.depth_arrival, above=True
+        ),
+        gauges=gauges,
+        gauge_interval=run.real(
+            "gauge_interval",
+            "a time in s above 0",
+            0.0,
+            MAX_DURATION,
+            default=default.gauge_interval,
+            above=True,
+        ),
+    )
