@@ -2,7 +2,9 @@
 
 from solver_service.errors import DeviceError, ModelError, SolverBlowUp
 from solver_service.numerics.bed_change import BedChange
+from solver_service.numerics.breach import Breach, BreachState
 from solver_service.numerics.budget import VolumeBudget
+from solver_service.numerics.conduits import ConduitState
 from solver_service.numerics.device import device_names, pick_device, warm_kernels
 from solver_service.numerics.edge_boundary import EdgeBoundary
 from solver_service.numerics.gauges import GaugeSeries
@@ -13,9 +15,14 @@ from solver_service.numerics.model import FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.snapshot import Snapshot
 from solver_service.numerics.solver import ShallowWaterSolver
+from solver_service.numerics.structures import Culvert, Pump, Structure, Weir
 
 __all__ = [
     "BedChange",
+    "Breach",
+    "BreachState",
+    "ConduitState",
+    "Culvert",
     "DeviceError",
     "EdgeBoundary",
     "FloodModel",
@@ -23,13 +30,16 @@ __all__ = [
     "Infiltration",
     "Maxima",
     "ModelError",
+    "Pump",
     "Rain",
     "ShallowWaterSolver",
     "Snapshot",
     "SolverBlowUp",
     "SolverParams",
     "Source",
+    "Structure",
     "VolumeBudget",
+    "Weir",
     "device_names",
     "pick_device",
     "warm_kernels",

@@ -13,12 +13,19 @@ from pathlib import Path
 import warp as wp
 
 from solver_service.errors import DeviceError
-from solver_service.numerics.warp_modules import ROWS_MODULE, STEP_MODULE, SUPPORT_MODULE
+from solver_service.numerics.warp_modules import (
+    ROWS_MODULE,
+    STEP_MODULE,
+    STRUCTURE_MODULE,
+    SUPPORT_MODULE,
+)
 
 LOCK_POLL_S = 0.2
 
 KERNEL_FILES = (
+    "breach_kernels",
     "clock_kernels",
+    "conduit_kernels",
     "forcing_kernels",
     "gauge_kernels",
     "ghost_kernels",
@@ -99,17 +106,34 @@ def warm_kernels(device: str = "auto", *, with_oracle: bool = False) -> float:
     modules = [SUPPORT_MODULE, ROWS_MODULE] if name == "cpu" else [SUPPORT_MODULE, STEP_MODULE]
     if name == "cpu" and with_oracle:
         modules.append(STEP_MODULE)
+    _load(modules, name)
+    return time.perf_counter() - began
+
+
+def load_structure_kernels(device: str) -> None:
+    """Compile and load the kernels that only models with structures or breaches need.
+
+    Args:
+        device: name of a device that is there.
+
+    Raises:
+        DeviceError: when the kernels do not compile.
+    """
+    _import_kernels()
+    _load([STRUCTURE_MODULE], device)
+
+
+def _load(modules: list[wp.Module], device: str) -> None:
     with _compiler_lock():
         for module in modules:
             try:
-                loaded = module.load(wp.get_device(name))
+                loaded = module.load(wp.get_device(device))
             except Exception as error:  # Warp raises the base class when a compiler fails
                 raise DeviceError(
-                    f"The kernels of {module.name} do not compile for {name}: {error}."
+                    f"The kernels of {module.name} do not compile for {device}: {error}."
                 ) from error
             if loaded is None:
-                raise DeviceError(f"The kernels of {module.name} cannot be loaded on {name}.")
-    return time.perf_counter() - began
+                raise DeviceError(f"The kernels of {module.name} cannot be loaded on {device}.")
 
 
 def thread_count(wish: int | None) -> int:
@@ -132,6 +156,6 @@ def compile_for_cuda(architecture: int, folder: Path) -> list[Path]:
         The cubin files.
     """
     _import_kernels()
-    for module in (SUPPORT_MODULE, STEP_MODULE):
+    for module in (SUPPORT_MODULE, STEP_MODULE, STRUCTURE_MODULE):
         wp.compile_aot_module(module, arch=architecture, module_dir=folder, use_ptx=False)
     return sorted(folder.glob("*.cubin"))

@@ -12,7 +12,10 @@ from solver_service.errors import ModelError, SolverBlowUp
 from solver_service.numerics.active_tiles import ActiveTiles
 from solver_service.numerics.after_step import changeable_cells, parts_of
 from solver_service.numerics.bed_change import BedChange, change_water, check_bed
+from solver_service.numerics.breach import BreachState
+from solver_service.numerics.breaches import Breaches
 from solver_service.numerics.budget import VolumeBudget, close_budget, edge_volumes, stored_volume
+from solver_service.numerics.conduits import Conduits, ConduitState
 from solver_service.numerics.device import pick_device, thread_count, warm_kernels
 from solver_service.numerics.edge_boundary import EDGES
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
@@ -62,6 +65,8 @@ class ShallowWaterSolver:
         store.write_padded("drag", np.pad(drag.astype(np.float32), 2, mode="symmetric"))
         self._tiles = ActiveTiles(store, params.depth_film, model.infiltration is not None)
         self._after_step = parts_of(model, params, store, self._tiles)
+        self._breaches = next((part for part in self._after_step if isinstance(part, Breaches)), None)
+        self._conduits = next((part for part in self._after_step if isinstance(part, Conduits)), None)
         self._tiles.keep_awake(changeable_cells(self._after_step, model.shape))
         longest = [params.dt_max, params.cfl * model.dx / WAVE_FLOOR]
         self._dt_max = min([*longest, *(part.dt_max for part in self._after_step)])
@@ -282,6 +287,14 @@ class ShallowWaterSolver:
             (part.volumes() for part in self._after_step),
         )
 
+    def breach_states(self) -> tuple[BreachState, ...]:
+        """How far each breach of the model has grown."""
+        return self._breaches.states() if self._breaches is not None else ()
+
+    def conduit_states(self) -> tuple[ConduitState, ...]:
+        """What each culvert and pump of the model does."""
+        return self._conduits.states() if self._conduits is not None else ()
+
     def gauge_series(self) -> GaugeSeries:
         """What the gauges of the parameters have recorded."""
         return self._gauges.series()
@@ -321,9 +334,12 @@ class ShallowWaterSolver:
             ModelError: when shape or values are not valid.
         """
         bed = check_bed(z_b, self.model.shape)
-        change = change_water(self._store, self.bed, bed, self.params.depth_dry, self.model.dx)
-        self._edits_volume += change.volume_cut
+        before = self.bed
         self._set_bed(bed)
+        if self._breaches is not None:
+            self._breaches.take_ground()
+        change = change_water(self._store, before, self.bed, self.params.depth_dry, self.model.dx)
+        self._edits_volume += change.volume_cut
         self._water_changed()
         return change
 

@@ -1,8 +1,8 @@
 """The Warp modules that the kernels live in, and their options.
 
 Few modules mean a short cold start, since each costs one compiler run. `step` holds the fused step of the
-scalar and CUDA engines, `rows` the SIMD step of CPUs (its native code must never reach NVRTC), `support`
-everything else.
+scalar and CUDA engines, `rows` the SIMD step of CPUs (its native code must never reach NVRTC), `structures`
+what only models with weirs, culverts, pumps or breaches need, `support` everything else.
 
 `fuse_fp` is off: without contraction a face that two cells compute apart gives both the same float, so that
 mass is conserved, and every engine gives the same bits.
@@ -29,3 +29,4 @@ if platform.machine() in ("x86_64", "AMD64"):
         f"{wp.config.cpu_compiler_flags or ''} -mprefer-vector-width=512"
     )
 SUPPORT_MODULE = _module("solver_service.numerics.warp_support")
+STRUCTURE_MODULE = _module("solver_service.numerics.warp_structures")
