@@ -1,8 +1,8 @@
 """`python -m bench NAME [--smoke] [--keep]`.
 
-A bench is a module of this package with a function `figures(smoke)` that yields one dictionary per figure,
-with at least `figure`, `value` and `unit`. `--smoke` takes a size that a continuous integration run can
-afford.
+A bench is a module or package of this package with a function `figures(smoke)` that yields one dictionary per
+figure, with at least `figure`, `value` and `unit`. `--smoke` takes a size that a continuous integration run
+can afford.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import json
+import pkgutil
 import sys
 import time
 from pathlib import Path
@@ -17,12 +18,12 @@ from pathlib import Path
 from bench.machine import load, machine
 
 FOLDER = Path(__file__).parent
-NOT_BENCHES = {"__init__", "__main__", "machine", "service_process"}
+NOT_BENCHES = {"__init__", "__main__", "machine", "service_process", "viewer_scenes"}
 
 
 def names() -> list[str]:
     """The benches there are."""
-    return sorted(path.stem for path in FOLDER.glob("*.py") if path.stem not in NOT_BENCHES)
+    return sorted({module.name for module in pkgutil.iter_modules([str(FOLDER)])} - NOT_BENCHES)
 
 
 def main(arguments: list[str] | None = None) -> int:
