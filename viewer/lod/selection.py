@@ -5,7 +5,7 @@ Flat and vectorised over all blocks.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -105,6 +105,7 @@ class BlockSelector:
         partial_spacing_px: float = 0.0,
         cull: bool = True,
         cull_covered_terrain: bool = True,
+        classify_water: bool = True,
         full_mesh: bool = False,
     ) -> Selection:
         """Choose the blocks of one picture.
@@ -122,6 +123,8 @@ class BlockSelector:
             partial_spacing_px: the same for partial blocks.
             cull: whether to leave out blocks outside of the view.
             cull_covered_terrain: whether to leave out terrain under fully wet blocks.
+            classify_water: whether to go by the water states; without, every block in view draws all vertices
+                of the water, and the terrain knows of none.
             full_mesh: draw all vertices of all blocks.
         """
         width, height = size
@@ -139,7 +142,7 @@ class BlockSelector:
                 slope_px * frame.exaggeration * screen_error_factor(camera.elevation, camera.fov_y, aspect)
             )
             level = self._table.levels(distance, scale, tau_px, self._least_beside(distance))
-            if states is not None:
+            if states is not None and classify_water:
                 level[states == PARTIAL] = self._spacing_levels(
                     distance[states == PARTIAL], slope_px, partial_spacing_px
                 )
@@ -153,7 +156,24 @@ class BlockSelector:
         if cull:
             frustum = Frustum(camera.projection(aspect, 1e-2, 1e7) @ camera.view_matrix())
             visible = frustum.intersects_boxes(self._centre, self._half)
-        return self._collect(level, visible, states, cull_covered_terrain, distance, offset)
+        selection = self._collect(
+            level, visible, states if classify_water else None, cull_covered_terrain, distance, offset
+        )
+        return selection if states is None or classify_water else self._with_all_water(selection)
+
+    def _with_all_water(self, selection: Selection) -> Selection:
+        """The same selection with every block in view as water at full resolution."""
+        visible = selection.visible
+        instances = self._instances[visible]
+        for edge in "wesn":
+            instances[edge] = 0
+        water = (instances, *(instances[:0] for _ in range(1, self._tiling.level_count)))
+        stats = replace(
+            selection.stats,
+            water_triangles=int(self._tiling.triangle_counts[0][visible].sum()),
+            water_blocks=int(visible.sum()),
+        )
+        return replace(selection, water=water, stats=stats)
 
     def _set_heights(self, frame: WorldFrame, states: npt.NDArray[np.uint8] | None, depth_max: float) -> None:
         low = frame.height(self._bounds.z_min.ravel())

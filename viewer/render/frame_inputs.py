@@ -131,6 +131,8 @@ class RenderOptions:
     """Leave out blocks outside of the view."""
     cull_covered_terrain: bool = True
     """Leave out terrain under fully wet blocks."""
+    classify_water: bool = True
+    """Leave out the water of dry blocks and fit the ground to it; without, all is drawn (to compare)."""
     wireframe: bool = False
     show_blocks: bool = False
     """Colour blocks by level of detail."""

@@ -92,6 +92,7 @@ class TerrainLod:
             partial_spacing_px=options.partial_spacing_px,
             cull=options.cull,
             cull_covered_terrain=options.cull_covered_terrain,
+            classify_water=options.classify_water,
             full_mesh=options.full_mesh,
         )
 

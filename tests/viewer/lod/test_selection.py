@@ -7,6 +7,7 @@ import pytest
 from viewer.lod import (
     BlockSelector,
     BlockTiling,
+    Selection,
     SwitchTable,
     block_bounds,
     block_errors,
@@ -225,3 +226,23 @@ def test_the_triangle_count_is_that_of_the_triangles_with_an_area(
                     for p, q, r in ((a, b, c), (a, c, d)):
                         count += (q[0] - p[0]) * (r[1] - p[1]) != (r[0] - p[0]) * (q[1] - p[1])
     assert selection.stats.terrain_triangles == count
+
+
+def test_without_classification_all_water_is_drawn_and_the_ground_knows_of_none(scene: Scene) -> None:
+    states = np.zeros(scene.tiling.block_count, np.uint8)
+    states[:3] = (1, 2, 2)
+
+    def select(**options: object) -> Selection:
+        return scene.selector.select(CAMERAS[0], scene.field.frame, SIZE, 4.0, cull=False, **options)  # type: ignore[arg-type]
+
+    unclassified, dry = select(states=states, classify_water=False), select()
+    full = select(full_mesh=True)
+
+    assert unclassified.stats.water_blocks == scene.tiling.block_count
+    assert unclassified.stats.water_triangles == full.stats.terrain_triangles
+    assert [len(blocks) for blocks in unclassified.water] == [scene.tiling.block_count] + [0] * (
+        scene.tiling.level_count - 1
+    )
+    for ours, theirs in zip(unclassified.terrain, dry.terrain, strict=True):
+        assert np.array_equal(ours, theirs)
+    assert select(states=states).stats.water_blocks == 3
