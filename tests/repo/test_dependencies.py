@@ -64,7 +64,7 @@ def distributions_imported_by(folder: str) -> dict[str, str]:
         ("protocol", ()),
         ("solver_service", ("solver",)),
         ("viewer", ("viewer",)),
-        ("bench", ("solver", "viewer")),
+        ("bench", ("solver", "viewer", "dev")),
         ("tests", ("solver", "viewer", "dev")),
     ],
 )
