@@ -12,6 +12,7 @@ from protocol.errors import GridError
 from solver_service.errors import CaseError, ModelError, TerrainError
 from solver_service.numerics import FloodModel
 from solver_service.scenario.boundaries import read_boundaries
+from solver_service.scenario.breaches import read_breaches
 from solver_service.scenario.case import Case
 from solver_service.scenario.case_folder import CaseFolder
 from solver_service.scenario.demo import read_demo
@@ -19,12 +20,12 @@ from solver_service.scenario.ground import GroundKeys, read_ground, read_ground_
 from solver_service.scenario.infiltration import read_infiltration
 from solver_service.scenario.initial import read_initial
 from solver_service.scenario.inputs import Inputs
-from solver_service.scenario.keys import NOT_YET
 from solver_service.scenario.places import gauge_cells, read_gauges, read_sections
 from solver_service.scenario.rain import read_rain
 from solver_service.scenario.roughness import read_roughness
 from solver_service.scenario.run_settings import read_params, read_times
 from solver_service.scenario.sources import read_sources
+from solver_service.scenario.structures import read_culverts, read_pumps, read_weirs
 from solver_service.scenario.table import Table
 
 NAME = re.compile(r"[A-Za-z0-9_-]{1,64}\Z")
@@ -34,18 +35,14 @@ def read_top(folder: CaseFolder) -> Table:
     """The tables of a case file, known to be known.
 
     Raises:
-        CaseError: the file is no TOML, or has an unknown or not yet supported table.
+        CaseError: the file is no TOML, or has an unknown table.
     """
     file = folder.case_file.name
     try:
         values: dict[str, Any] = tomllib.loads(folder.text())
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise CaseError(f"{file}: is no valid TOML: {error}.") from error
-    top = Table(file, "", values)
-    for name, instead in NOT_YET.items():
-        if top.has(name):
-            raise CaseError(f"{file}: [{name}] cannot be computed by this version; {instead}.")
-    return top
+    return Table(file, "", values)
 
 
 def need(top: Table, name: str) -> Table:
@@ -104,8 +101,15 @@ def _read_below_ground(top: Table, keys: GroundKeys, inputs: Inputs) -> Case:
         sources=read_sources(top.tables("source"), inputs),
         rain=read_rain(top.table("rain"), inputs),
         infiltration=read_infiltration(top.table("infiltration"), inputs),
+        structures=(
+            *read_weirs(top.tables("weir"), inputs),
+            *read_culverts(top.tables("culvert"), inputs),
+            *read_pumps(top.tables("pump"), inputs),
+        ),
+        breaches=read_breaches(top.tables("breach"), inputs),
         blocked=terrain.wall if terrain.wall.any() else None,
     )
+    check_ids(model, top.file)
     imagery = inputs.file(keys.table, "imagery") if keys.table.has("imagery") else None
     return Case(
         name=about.text("name"),
@@ -129,6 +133,27 @@ def _read_below_ground(top: Table, keys: GroundKeys, inputs: Inputs) -> Case:
         imagery=None if folder.temporary else imagery,
         demo=read_demo(top.table("demo"), terrain.grid),
     )
+
+
+def check_ids(model: FloodModel, file: str) -> None:
+    """Refuse a name that two boundaries, sources, structures or breaches share, for the budget goes by name.
+
+    Raises:
+        CaseError: naming it.
+    """
+    named: dict[str, str] = {}
+    kinds = (
+        ("boundary", model.boundaries),
+        ("source", model.sources),
+        ("structure", model.structures),
+        ("breach", model.breaches),
+    )
+    for kind, parts in kinds:
+        for part in parts:
+            if not part.id or part.id in named:
+                also = f", and of a {named[part.id]}" if part.id in named else ""
+                raise CaseError(f"{file}: '{part.id}' is the id of a {kind}{also}; each its own is allowed.")
+            named[part.id] = kind
 
 
 def planned_grid(folder: CaseFolder) -> GridGeometry | None:

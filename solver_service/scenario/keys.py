@@ -57,6 +57,47 @@ KEYS: dict[str, frozenset[str]] = {
     "rain": frozenset({"series", "rate", "unit", "interpolation", "key", "row0"}),
     "infiltration": frozenset({"model", *INFILTRATION, "classes", "table", "row0", "zone"}),
     "infiltration.zone": frozenset({"polygons", "polygon", *INFILTRATION}),
+    "weir": frozenset({"id", "line", "crest", "coefficient"}),
+    "culvert": frozenset(
+        {
+            "id",
+            "inlet",
+            "outlet",
+            "radius",
+            "inlet_level",
+            "outlet_level",
+            "diameter",
+            "width",
+            "height",
+            "length",
+            "barrels",
+            "manning_n",
+            "entrance_loss",
+            "both_ways",
+        }
+    ),
+    "pump": frozenset(
+        {"id", "inlet", "outlet", "radius", "discharge", "rating", "start_level", "stop_level"}
+    ),
+    "breach": frozenset(
+        {
+            "id",
+            "line",
+            "law",
+            "start",
+            "start_time",
+            "duration",
+            "crest",
+            "bottom_level",
+            "width_initial",
+            "width_final",
+            "across",
+            "side_slope",
+            "f1",
+            "f2",
+            "critical_velocity",
+        }
+    ),
     "gauge": frozenset({"id", "at"}),
     "section": frozenset({"id", "line"}),
     "run": frozenset(
@@ -84,17 +125,16 @@ ARRAYS = frozenset(
         "infiltration.zone",
         "boundary",
         "source",
+        "weir",
+        "culvert",
+        "pump",
+        "breach",
         "gauge",
         "section",
         "demo.edit",
     }
 )
 """Tables that may stand several times: [[name]]."""
-
-NOT_YET: dict[str, str] = {
-    "breach": "the supported ways of water are [initial], [[source]], [rain] and open edges",
-}
-"""Tables of the case format that this version cannot compute, with what it can."""
 
 BOUNDARY_KINDS = ("wall", "open", "stage", "discharge", "normal_depth")
 """What an edge may do."""

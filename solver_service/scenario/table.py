@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from solver_service.errors import CaseError
-from solver_service.scenario.keys import ARRAYS, KEYS, NOT_YET
+from solver_service.scenario.keys import ARRAYS, KEYS
 
 Point = tuple[float, float]
 
@@ -34,7 +34,7 @@ class Table:
         self.values = values
         self.number = number
         allowed = set(KEYS[name])
-        allowed |= {table for table in (*KEYS, *NOT_YET) if table and "." not in table} if not name else set()
+        allowed |= {table for table in KEYS if table and "." not in table} if not name else set()
         for key in values:
             if key not in allowed:
                 raise CaseError(f"{file}: {self.label} has the unknown key '{key}'{_hint(key, allowed)}.")

@@ -51,11 +51,6 @@ def test_what_the_case_says_arrives(tmp_path: Path) -> None:
         ("gauge_interval = 1.0", "depth_dry = -0.001", "depth_dry is -0.001"),
         ("hypothetical = true", 'hypothetical = "yes"', "hypothetical is 'yes'; true or false"),
         ("hypothetical = true", 'start_time = "1959-12-02T21:14:00"', "an ISO-8601 time with an offset"),
-        (
-            "[run]",
-            "[[breach]]\nline = []\n[run]",
-            r"\[breach\] cannot be computed by this version; the supported",
-        ),
     ],
 )
 def test_a_bad_case_is_told_in_one_sentence(tmp_path: Path, old: str, new: str, message: str) -> None:
