@@ -1,4 +1,4 @@
-"""Fixtures ``figure`` and ``compare``: measure, assert, and keep the numbers for the table in the
+"""Fixtures ``figure``, ``compare`` and ``picture``: measure, assert, and keep numbers and diagrams for the
 documents."""
 
 from collections.abc import Callable
@@ -6,6 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.validation.figures import FIGURES, Figure
+from tests.validation.pictures import PICTURES, Panel, Picture
 from tests.validation.runs import State, errors
 
 UNITS = {"h": "m", "discharge": "m2/s", "velocity": "m/s"}
@@ -13,6 +14,7 @@ UNITS = {"h": "m", "discharge": "m2/s", "velocity": "m/s"}
 
 def pytest_configure(config: pytest.Config) -> None:
     config.stash.setdefault(FIGURES, [])
+    config.stash.setdefault(PICTURES, [])
 
 
 @pytest.fixture
@@ -29,14 +31,34 @@ def figure(request: pytest.FixtureRequest) -> Callable[..., Figure]:
 
 
 @pytest.fixture
-def compare(figure) -> Callable[[str, dict[str, float], State, State, State], None]:
-    """Record all norms of a run, each below its bound, and each bound below the published scheme's error."""
+def compare(figure) -> Callable[..., None]:
+    """Record all norms of a run, each below its bound, and each bound below the published scheme's error.
 
-    def record(case: str, bounds: dict[str, float], computed: State, exact: State, published: State) -> None:
+    ``of`` is appended to the names of the norms.
+    """
+
+    def record(
+        case: str,
+        bounds: dict[str, float],
+        computed: State,
+        exact: State,
+        published: State,
+        of: str = "",
+    ) -> None:
         measured, yardstick = errors(computed, exact), errors(published, exact)
         for norm, bound in bounds.items():
-            assert bound <= yardstick[norm], f"the bound of {norm} is laxer than the published scheme"
+            assert bound <= yardstick[norm], f"the bound of {norm}{of} is laxer than the published scheme"
             unit = UNITS[norm.split()[-1]]
-            figure(case, norm, measured[norm], unit=unit, below=bound, yardstick=yardstick[norm])
+            figure(case, norm + of, measured[norm], unit=unit, below=bound, yardstick=yardstick[norm])
+
+    return record
+
+
+@pytest.fixture
+def picture(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """Keep a picture for the documents: ``picture(case, name, *panels)``."""
+
+    def record(case: str, name: str, *panels: Panel) -> None:
+        request.config.stash[PICTURES].append(Picture(case, name, panels))
 
     return record

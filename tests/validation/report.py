@@ -1,8 +1,9 @@
-"""Run the validation and write its table: ``python -m tests.validation.report``.
+"""Run the validation, write its tables and draw its pictures: ``python -m tests.validation.report``.
 
 The table in ``docs/validation.md`` stands between two marks; the text around it is kept. Round-off figures
-show only their bound, so that the file is the same on every machine. With ``FEV_DATA_HOME`` the Malpasset
-case runs too; without, its lines are kept as they were.
+show only their bound, so that the file is the same on every machine. Cases whose data are not there
+(``FEV_DATA_HOME``) are skipped; then sections that were not measured are kept as they were. Pictures go to
+``docs/images/validation``.
 """
 
 import sys
@@ -11,20 +12,28 @@ from pathlib import Path
 import pytest
 
 from tests.validation.figures import FIGURES, Figure
-from tests.validation.test_malpasset import CASE as MALPASSET
+from tests.validation.pictures import PICTURES, Picture, draw
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation.md"
+IMAGES = PAGE.parent / "images" / "validation"
+LARGEST_IMAGE = 60_000
 BEGIN, END = "<!-- figures: written by tests.validation.report -->", "<!-- figures end -->"
 
 
 class Collector:
-    """Keep the figures of a run of pytest."""
+    """Keep the figures and pictures of a run of pytest."""
 
     def __init__(self) -> None:
         self.figures: list[Figure] = []
+        self.pictures: list[Picture] = []
+        self.skipped = False
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self.skipped = self.skipped or report.skipped
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         self.figures = list(session.config.stash[FIGURES])
+        self.pictures = list(session.config.stash[PICTURES])
 
 
 def number(value: float, figure: Figure) -> str:
@@ -45,31 +54,33 @@ def row(figure: Figure) -> str:
     return f"| {figure.quantity} | {measured} | {' and '.join(allowed) or 'reported'} | {yardstick} |"
 
 
-def sections(figures: list[Figure]) -> dict[str, list[str]]:
-    """Lines of the table by case."""
-    found: dict[str, list[str]] = {}
+def sections(figures: list[Figure], shown: dict[str, list[str]]) -> dict[str, str]:
+    """Pictures and table of each case, as Markdown."""
+    head = "| quantity | measured | allowed | yardstick |\n|---|---|---|---|\n"
+    rows: dict[str, list[str]] = {}
     for figure in figures:
-        found.setdefault(figure.case, []).append(row(figure))
-    return found
+        rows.setdefault(figure.case, []).append(row(figure))
+    return {case: "".join(shown.get(case, [])) + head + "\n".join(lines) for case, lines in rows.items()}
 
 
-def parse(text: str) -> dict[str, list[str]]:
+def parse(text: str) -> dict[str, str]:
     """The sections that an earlier run has written."""
+    parts = [part.split("\n", 1) for part in text.split("### ")[1:]]
+    return {case: body.strip() for case, body in parts}
+
+
+def show(pictures: list[Picture]) -> dict[str, list[str]]:
+    """Draw the pictures and return their lines by case."""
+    IMAGES.mkdir(parents=True, exist_ok=True)
     found: dict[str, list[str]] = {}
-    case = ""
-    for line in text.splitlines():
-        if line.startswith("### "):
-            case = line[4:]
-            found[case] = []
-        elif case and line.startswith("| ") and not line.startswith("| quantity"):
-            found[case].append(line)
+    for picture in pictures:
+        path = draw(picture, IMAGES)
+        size = path.stat().st_size
+        if size > LARGEST_IMAGE:
+            raise ValueError(f"{path} has {size} bytes; {LARGEST_IMAGE} are allowed.")
+        line = f"![{picture.case}](images/validation/{path.name})\n\n"
+        found.setdefault(picture.case, []).append(line)
     return found
-
-
-def render(found: dict[str, list[str]]) -> str:
-    """The sections as Markdown."""
-    head = "| quantity | measured | allowed | yardstick |\n|---|---|---|---|"
-    return "\n\n".join(f"### {case}\n\n{head}\n" + "\n".join(lines) for case, lines in found.items())
 
 
 def main(arguments: list[str]) -> int:
@@ -81,10 +92,14 @@ def main(arguments: list[str]) -> int:
     page = PAGE.read_text(encoding="utf-8")
     before, rest = page.split(BEGIN)
     old, after = rest.split(END)
-    kept = {case: lines for case, lines in parse(old).items() if case == MALPASSET}
-    found = dict(sorted((kept | sections(collector.figures)).items()))
-    PAGE.write_text(f"{before}{BEGIN}\n\n{render(found)}\n\n{END}{after}", encoding="utf-8")
-    print(f"{PAGE}: {len(collector.figures)} figures of {len(sections(collector.figures))} cases")
+    found = sections(collector.figures, show(collector.pictures))
+    kept = parse(old) if collector.skipped else {}
+    body = "\n\n".join(f"### {case}\n\n{text}" for case, text in sorted((kept | found).items()))
+    PAGE.write_text(f"{before}{BEGIN}\n\n{body}\n\n{END}{after}", encoding="utf-8")
+    for path in IMAGES.iterdir():
+        if path.name not in body:
+            path.unlink()
+    print(f"{PAGE}: {len(collector.figures)} figures of {len(found)} cases")
     return 0
 
 

@@ -7,6 +7,7 @@ scheme on cells of 1.25 m, an independent solver that has converged to a tenth o
 
 import pytest
 
+from tests.validation.pictures import Line, Panel
 from tests.validation.runs import channel, errors, l1, solve, solve_published
 from tests.validation.solutions import Dressler
 
@@ -58,10 +59,27 @@ def test_errors_behind_the_tip_stay_below_the_published_second_order_scheme(comp
     compare(CASE, BOUNDS, behind(computed), exact(), behind(published))
 
 
-def test_whole_wave_with_its_tip_is_that_of_a_fine_grid(computed, published, fine, figure):
+def test_whole_wave_with_its_tip_is_that_of_a_fine_grid(computed, published, fine, figure, picture):
     yardstick = l1(published[0], fine[0])
     found = l1(computed[0], fine[0])
     figure(CASE, "L1 of h against cells of 1.25 m", found, unit="m", below=0.0106, yardstick=yardstick)
+    near = (X > -500.0) & (X < 550.0)
+    behind_tip = BEHIND & near
+    panels = (
+        Panel(
+            title,
+            "x [m]",
+            up,
+            (
+                Line("fine", X[near], fine[k][near]),
+                Line("exact", X[behind_tip], DAM.state(X[behind_tip], 0.0 * X[behind_tip], TIME)[k]),
+                Line("other", X[near], published[k][near]),
+                Line("computed", X[near], computed[k][near]),
+            ),
+        )
+        for k, (title, up) in enumerate((("depth", "h [m]"), ("velocity", "u [m/s]")))
+    )
+    picture(CASE, "dressler", *panels)
 
 
 def test_front_is_found_within_a_cell(computed, published, fine, figure):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.validation.pictures import profiles
 from tests.validation.runs import channel, errors, l1, order_of, solve, solve_published
 from tests.validation.solutions import Ritter
 
@@ -33,8 +34,11 @@ def published():
     return solve_published(DAM, GRID, TIME)
 
 
-def test_errors_stay_below_the_published_second_order_scheme(computed, published, compare):
+def test_errors_stay_below_the_published_second_order_scheme(computed, published, compare, picture):
     compare(CASE, BOUNDS, computed, exact(), published)
+    near = GRID.centres[0][0] > -500.0
+    states = (tuple(q[0][near] for q in state) for state in (exact(), computed, published))
+    picture(CASE, "ritter", *profiles(GRID.centres[0][0][near], *states))
 
 
 def test_first_order_run_fails_the_bounds():

@@ -8,6 +8,7 @@ averaged over the cells.
 
 import numpy as np
 
+from tests.validation.pictures import Line, Panel
 from tests.validation.runs import channel, l1, make_solver, order_of, solve, solve_published, square
 from tests.validation.solutions import SimpleWave, StationaryVortex
 
@@ -39,21 +40,42 @@ def basin(cells, **params):
     return solver.depth().astype(np.float64)
 
 
-def test_simple_wave_converges_with_second_order(figure):
-    found = wave_errors((160, 320, 640))
-    figure(SIMPLE, "order of L1 of h, 320 to 640 cells", order_of(found), above=1.8)
+def convergence(title, cells, found, yardstick):
+    """Errors against the number of cells, with the slope of second order."""
+    second = yardstick[0] * (cells[0] / np.array(cells)) ** 2
+    return Panel(
+        title,
+        "cells",
+        "L1 of h [m]",
+        (
+            Line("exact", cells, second, "second order"),
+            Line("other", cells[: len(yardstick)], yardstick),
+            Line("computed", cells, found),
+        ),
+        log=True,
+    )
+
+
+def test_simple_wave_converges_with_second_order(figure, picture):
+    cells = (160, 320, 640)
+    found, yardstick = wave_errors(cells), wave_errors(cells, solve_published)
+    picture(SIMPLE, "simple_wave", convergence("simple wave", cells, found, yardstick))
+    rate = order_of(yardstick)
+    figure(SIMPLE, "order of L1 of h, 320 to 640 cells", order_of(found), above=1.8, yardstick=rate)
     figure(
         SIMPLE,
         "L1 of h, 160 cells",
         found[0],
         unit="m",
         below=0.0021,
-        yardstick=wave_errors((160,), solve_published)[0],
+        yardstick=yardstick[0],
     )
 
 
-def test_vortex_converges_with_second_order(figure):
-    found = vortex_errors((64, 128, 256))
+def test_vortex_converges_with_second_order(figure, picture):
+    cells = (64, 128, 256)
+    found, yardstick = vortex_errors(cells), vortex_errors(cells[:2], solve_published)
+    picture(SWIRL, "vortex", convergence("vortex", cells, found, yardstick))
     figure(SWIRL, "order of L1 of h, 128 to 256 cells a side", order_of(found), above=1.7)
     figure(
         SWIRL,
@@ -61,7 +83,7 @@ def test_vortex_converges_with_second_order(figure):
         found[0],
         unit="m",
         below=0.00105,
-        yardstick=vortex_errors((64,), solve_published)[0],
+        yardstick=yardstick[0],
     )
 
 

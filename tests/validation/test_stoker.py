@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.validation.pictures import profiles
 from tests.validation.runs import channel, errors, l1, solve, solve_published
 from tests.validation.solutions import Stoker
 
@@ -28,8 +29,12 @@ def exact():
     return DAM.state(*GRID.centres, TIME)
 
 
-def test_errors_stay_below_the_published_second_order_scheme(computed, compare):
-    compare(CASE, BOUNDS, computed, exact(), solve_published(DAM, GRID, TIME))
+def test_errors_stay_below_the_published_second_order_scheme(computed, compare, picture):
+    published = solve_published(DAM, GRID, TIME)
+    compare(CASE, BOUNDS, computed, exact(), published)
+    near = np.abs(GRID.centres[0][0]) < 500.0
+    states = (tuple(q[0][near] for q in state) for state in (exact(), computed, published))
+    picture(CASE, "stoker", *profiles(GRID.centres[0][0][near], *states))
 
 
 def test_relative_error_is_far_below_what_a_second_order_peer_asserts(computed, figure):

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
+from tests.validation.pictures import Line, Panel
 from tests.validation.runs import Grid, errors, l1, order_of, solve, solve_published, square
 from tests.validation.shores import energy, shore_mismatch
 from tests.validation.solutions import ThackerPlanar, ThackerRadial
@@ -23,6 +24,7 @@ class Basin:
     wrong: ThackerPlanar | ThackerRadial
     size: float
     kept: float
+    picture: str
     bounds: dict[str, float] = field(hash=False)
 
     @property
@@ -57,6 +59,7 @@ BASINS = {
         replace(PLANE, sigma=480.0),
         4000.0,
         0.96,
+        "thacker_plane",
         {
             "L1 of h": 0.024,
             "L2 of h": 0.071,
@@ -71,6 +74,7 @@ BASINS = {
         replace(CURVED, r0=780.0),
         3000.0,
         0.865,
+        "thacker_curved",
         {
             "L1 of h": 0.0258,
             "L2 of h": 0.0625,
@@ -80,6 +84,24 @@ BASINS = {
         },
     ),
 }
+
+
+def sections(basin, computed, published):
+    """Surface and speed along the basin from south to north."""
+    x, y = basin.grid.centres
+    middle = basin.grid.ncols // 2
+    bed, y = basin.bowl.bed(x, y)[:, middle], y[:, middle]
+    near = bed < 0.8 * basin.bowl.h0
+    levels, speeds = [Line("bed", y[near], bed[near])], []
+    for kind, state in (("exact", basin.exact()), ("other", published), ("computed", computed)):
+        h, u, v = (q[:, middle] for q in state)
+        wet = near & (h > 0.1)
+        levels.append(Line(kind, y[wet], (bed + h)[wet]))
+        speeds.append(Line(kind, y[wet], np.hypot(u, v)[wet]))
+    return (
+        Panel("surface in the middle", "y [m]", "level [m]", tuple(levels)),
+        Panel("speed in the middle", "y [m]", "speed [m/s]", tuple(speeds)),
+    )
 
 
 @pytest.fixture(scope="module", params=BASINS.values(), ids=BASINS)
@@ -97,8 +119,9 @@ def published(basin):
     return solve_published(basin.bowl, basin.grid, basin.time)
 
 
-def test_errors_stay_below_the_published_second_order_scheme(basin, computed, published, compare):
+def test_errors_stay_below_the_published_second_order_scheme(basin, computed, published, compare, picture):
     compare(basin.case, basin.bounds, computed, basin.exact(), published)
+    picture(basin.case, basin.picture, *sections(basin, computed, published))
 
 
 def test_first_order_run_fails_the_bounds(basin):
