@@ -6,6 +6,10 @@
 The momentum fluxes are relative to the cell's own pressure (see `riemann`), so what remains of pressure and
 bed slope inside the cell is g h (eta_e - eta_w), exactly zero when the reconstructed surface is level.
 
+The time a cell has been wet is kept as one number that changes only when the cell gets wet or dry, so that
+nothing is summed up and cells that sleep need no care: the time in all while it is dry, and -(1 + s) while it
+is wet, where s is now less the time in all.
+
 Hazard is the UK rating HR = h (|u| + 0.5) + DF, DF = 0.5 for h <= 0.25 m, else 1 [Defra2006]; speeds count
 for the maxima only where h > 0.05 m.
 """
@@ -17,8 +21,8 @@ from solver_service.numerics.friction import GRAVITY, friction_factor
 DEPTH_SPEED_COUNTS = wp.constant(0.05)
 """Depth above which a speed counts for the maxima [m]."""
 
-maxima = wp.types.vector(length=7, dtype=wp.float32)
-"""h, time of it, speed, h speed, hazard, arrival time, wave speed."""
+maxima = wp.types.vector(length=9, dtype=wp.float32)
+"""h, time of it, speed, h speed, hazard, arrival time, wave speed, wet since, rate of rise."""
 
 
 @wp.func
@@ -71,11 +75,19 @@ def update_cell(
 
 
 @wp.func
+def arrival_time(h: float, depth: float, time: float, arrival: float) -> float:
+    """First time deeper than `depth` [s]."""
+    return wp.where(h > depth, wp.min(arrival, time), arrival)
+
+
+@wp.func
 def widen_maxima(
     h: float,
     u: float,
     v: float,
     speed: float,
+    h_before: float,
+    dt: float,
     time: float,
     depth_arrival: float,
     h_max: float,
@@ -84,11 +96,16 @@ def widen_maxima(
     discharge_max: float,
     hazard_max: float,
     arrival: float,
+    wet_since: float,
+    rise_rate_max: float,
 ) -> maxima:
     """Maxima that take in a new state; the wave speed is huge where the state is not finite."""
+    arrived = h > depth_arrival
     counted = wp.where(h > DEPTH_SPEED_COUNTS, speed, 0.0)
     hazard = h * (counted + 0.5) + wp.where(h > 0.25, 1.0, 0.5)
-    hazard = wp.where(h > depth_arrival, hazard, 0.0)
+    hazard = wp.where(arrived, hazard, 0.0)
+    rise_rate = wp.where(arrived, (h - h_before) * (1.0 / dt), 0.0)
+    turned = wp.where(arrived, (wet_since - time) - 1.0, (wet_since + time) + 1.0)
     wave = wp.max(wp.abs(u), wp.abs(v)) + wp.sqrt(GRAVITY * h)
     return maxima(
         wp.max(h_max, h),
@@ -96,6 +113,8 @@ def widen_maxima(
         wp.max(speed_max, counted),
         wp.max(discharge_max, h * counted),
         wp.max(hazard_max, hazard),
-        wp.where(h > depth_arrival, wp.min(arrival, time), arrival),
+        arrival_time(h, depth_arrival, time, arrival),
         wp.where(wave + speed < 1.0e30, wave, 3.0e38),
+        wp.where(arrived == (wet_since < 0.0), wet_since, turned),
+        wp.max(rise_rate_max, rise_rate),
     )

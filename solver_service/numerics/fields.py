@@ -1,7 +1,8 @@
 """The arrays of a run on its device, and the numbers of the scheme, as Warp structs.
 
 Rasters are float32 [nrows + 4, ncols + 4]: two ghost cells surround the grid. h, u, v exist twice; a step
-reads one set and writes the other. Arrival times are `NEVER` where the water has not come.
+reads one set and writes the other. Arrival times are `NEVER` where the water has not come; those by depth
+class are [class, nrows + 4, ncols + 4].
 """
 
 from __future__ import annotations
@@ -22,7 +23,16 @@ NEVER = 3.0e38
 FloatRaster = npt.NDArray[np.float32]
 
 STATE_NAMES = ("h", "u", "v")
-MAXIMA_NAMES = ("h_max", "h_max_time", "speed_max", "discharge_max", "hazard_max", "arrival")
+MAXIMA_NAMES = (
+    "h_max",
+    "h_max_time",
+    "speed_max",
+    "discharge_max",
+    "hazard_max",
+    "arrival",
+    "wet_since",
+    "rise_rate_max",
+)
 
 
 @wp.struct
@@ -43,6 +53,10 @@ class Fields:
     discharge_max: wp.array2d(dtype=wp.float32)
     hazard_max: wp.array2d(dtype=wp.float32)
     arrival: wp.array2d(dtype=wp.float32)
+    wet_since: wp.array2d(dtype=wp.float32)
+    rise_rate_max: wp.array2d(dtype=wp.float32)
+    class_depths: wp.array(dtype=wp.float32)
+    class_arrival: wp.array3d(dtype=wp.float32)
     edge_flow: wp.array2d(dtype=wp.float64)
 
 
@@ -68,15 +82,19 @@ class FieldStore:
         nrows: grid rows.
         ncols: grid columns.
         device: Warp device name.
+        arrival_depths: depth classes whose arrival times are kept [m].
     """
 
-    def __init__(self, nrows: int, ncols: int, device: str) -> None:
+    def __init__(self, nrows: int, ncols: int, device: str, arrival_depths: tuple[float, ...] = ()) -> None:
         self.nrows, self.ncols, self.device = nrows, ncols, device
         shape = (nrows + 2 * GHOSTS, ncols + 2 * GHOSTS)
         names = [name + side for name in STATE_NAMES for side in ("0", "1")]
         names += ["z", "drag", *MAXIMA_NAMES]
         self.arrays = {name: wp.zeros(shape, dtype=wp.float32, device=device) for name in names}
         self.edge_flow = wp.zeros((4, max(nrows, ncols)), dtype=wp.float64, device=device)
+        self.arrival_depths = arrival_depths
+        self.class_depths = wp.array(arrival_depths, dtype=wp.float32, device=device)
+        self.class_arrival = wp.zeros((len(arrival_depths), *shape), dtype=wp.float32, device=device)
         self.parity = 0
         self.fields = (self._view("0", "1"), self._view("1", "0"))
 
@@ -88,6 +106,7 @@ class FieldStore:
         for name in ("z", "drag", *MAXIMA_NAMES):
             setattr(fields, name, self.arrays[name])
         fields.edge_flow = self.edge_flow
+        fields.class_depths, fields.class_arrival = self.class_depths, self.class_arrival
         return fields
 
     def current(self, name: str) -> wp.array:
@@ -123,6 +142,15 @@ class FieldStore:
         targets = (name + "0", name + "1") if name in STATE_NAMES else (name,)
         for target in targets:
             self.arrays[target].assign(padded)
+
+    def read_class_arrival(self) -> npt.NDArray[np.float32]:
+        """Copy of the arrival times by depth class without ghost cells, [class, nrows, ncols]."""
+        return np.array(self.class_arrival.numpy()[:, GHOSTS:-GHOSTS, GHOSTS:-GHOSTS], order="C")
+
+    def write_class_arrival(self, values: npt.NDArray[np.float32]) -> None:
+        """Set the arrival times by depth class, [class, nrows, ncols]."""
+        if self.arrival_depths:
+            self.class_arrival.assign(np.pad(values, ((0, 0), (GHOSTS, GHOSTS), (GHOSTS, GHOSTS))))
 
     def interior(self, name: str) -> FloatRaster:
         """View (CPU) or copy (CUDA) of a raster without ghost cells; state names give the current state."""

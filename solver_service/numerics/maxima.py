@@ -26,6 +26,12 @@ class Maxima:
     """UK hazard rating h (speed + 0.5) + debris factor."""
     arrival_time: npt.NDArray[np.float32]
     """First time deeper than `depth_arrival` [s], NaN where never."""
+    wet_duration: npt.NDArray[np.float32]
+    """Time deeper than `depth_arrival` in all [s]."""
+    rise_rate_max: npt.NDArray[np.float32]
+    """Fastest rise of the depth in one step, where deeper than `depth_arrival` [m/s]."""
+    arrival_by_class: dict[float, npt.NDArray[np.float32]]
+    """First time deeper than each of the parameter `arrival_depths` [s], NaN where never, by depth [m]."""
 
 
 def begin_maxima(store: FieldStore, h: FloatRaster, depth_arrival: float) -> None:
@@ -40,11 +46,22 @@ def begin_maxima(store: FieldStore, h: FloatRaster, depth_arrival: float) -> Non
     store.write("discharge_max", h * speed)
     store.write("hazard_max", np.where(arrived, hazard, np.float32(0.0)))
     store.write("arrival", np.where(arrived, np.float32(0.0), np.float32(NEVER)))
+    store.write("wet_since", np.where(arrived, np.float32(-1.0), np.float32(0.0)))
+    store.write("rise_rate_max", np.zeros_like(h))
+    depths = np.array(store.arrival_depths, np.float32)[:, None, None]
+    store.write_class_arrival(np.where(h > depths, np.float32(0.0), np.float32(NEVER)))
+
+
+def end_wet_spells(store: FieldStore, time: float, depth_arrival: float) -> None:
+    """Let cells that are no deeper than `depth_arrival` [m] count as dry from `time` [s] on."""
+    since = store.read("wet_since")
+    ended = (since < 0.0) & (store.read("h") <= depth_arrival)
+    store.write("wet_since", np.where(ended, since + np.float32(time) + np.float32(1.0), since))
 
 
 def read_maxima(store: FieldStore, time: float, depth_dry: float) -> Maxima:
     """Host copies of the maxima at `time` [s]; what never got deeper than `depth_dry` [m] has no time."""
-    h = store.read("h")
+    h, since = store.read("h"), store.read("wet_since")
     h_max, arrival, time_of_max = store.read("h_max"), store.read("arrival"), store.read("h_max_time")
     grew = h > h_max  # rain and sources raise the water after the step
     h_max = np.maximum(h_max, h)
@@ -57,4 +74,10 @@ def read_maxima(store: FieldStore, time: float, depth_dry: float) -> Maxima:
         unit_discharge=store.read("discharge_max"),
         hazard=store.read("hazard_max"),
         arrival_time=np.where(arrival < NEVER, arrival, nan),
+        wet_duration=np.where(since < 0.0, (since + np.float32(time)) + np.float32(1.0), since),
+        rise_rate_max=store.read("rise_rate_max"),
+        arrival_by_class={
+            depth: np.where(times < NEVER, times, nan)
+            for depth, times in zip(store.arrival_depths, store.read_class_arrival(), strict=True)
+        },
     )

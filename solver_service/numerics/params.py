@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import Literal
@@ -31,6 +32,8 @@ class SolverParams:
     """Water no deeper than this does not move at all [m]; at most depth_dry."""
     depth_arrival: float = 0.01
     """Depth at which water counts as arrived [m]."""
+    arrival_depths: tuple[float, ...] = ()
+    """Depth classes whose arrival times are kept besides [m], 4 bytes a cell each."""
     dt_max: float = math.inf
     """Largest time step [s]."""
     dt_min: float = 1e-6
@@ -52,6 +55,9 @@ class SolverParams:
         self._check("depth_dry", 1e-6 <= self.depth_dry <= 0.1, "0.000001 to 0.1 m")
         self._check("depth_film", 1e-8 <= self.depth_film <= self.depth_dry, "0.00000001 m to depth_dry")
         self._check("depth_arrival", 0.0 < self.depth_arrival < math.inf, "a positive depth in m")
+        depths_hold = all(0.0 < depth < math.inf for depth in self.arrival_depths)
+        is_rising = all(a < b for a, b in itertools.pairwise(self.arrival_depths))
+        self._check("arrival_depths", depths_hold and is_rising, "positive depths in m, each above the last")
         self._check("dt_min", 0.0 < self.dt_min < math.inf, "a positive time in s")
         self._check("dt_max", self.dt_max > self.dt_min, "a time in s larger than dt_min")
         self._check("threads", self.threads is None or self.threads >= 1, "None or at least 1")

@@ -16,7 +16,7 @@ Warp.
 
 import warp as wp
 
-from solver_service.numerics.conservative_update import update_cell, widen_maxima
+from solver_service.numerics.conservative_update import arrival_time, update_cell, widen_maxima
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.reconstruction import predict
 from solver_service.numerics.riemann import face_flux
@@ -57,7 +57,8 @@ _SWEEP = r"""
     const float* const written[] = {
         (const float*)f.h_out.data, (const float*)f.u_out.data, (const float*)f.v_out.data,
         (const float*)f.h_max.data, (const float*)f.h_max_time.data, (const float*)f.speed_max.data,
-        (const float*)f.discharge_max.data, (const float*)f.hazard_max.data, (const float*)f.arrival.data};
+        (const float*)f.discharge_max.data, (const float*)f.hazard_max.data, (const float*)f.arrival.data,
+        (const float*)f.wet_since.data, (const float*)f.rise_rate_max.data};
 
     for (int i = row0 - 1; i <= row1; ++i) {
         float* __restrict__ B = scratch + (size_t)((i & 1) * 13) * span;
@@ -135,12 +136,21 @@ _SWEEP = r"""
         float* __restrict__ m3 = (float*)f.discharge_max.data + to;
         float* __restrict__ m4 = (float*)f.hazard_max.data + to;
         float* __restrict__ m5 = (float*)f.arrival.data + to;
+        float* __restrict__ m6 = (float*)f.wet_since.data + to;
+        float* __restrict__ m7 = (float*)f.rise_rate_max.data + to;
         #pragma clang loop vectorize(assume_safety) vectorize_width(16)
         for (int j = 1; j <= count; ++j) {
-            auto q = WIDEN(ho[j], uo[j], vo[j], speeds[j], time, depth_arrival,
-                m0[j], m1[j], m2[j], m3[j], m4[j], m5[j]);
+            auto q = WIDEN(ho[j], uo[j], vo[j], speeds[j], hs[j], dt, time, depth_arrival,
+                m0[j], m1[j], m2[j], m3[j], m4[j], m5[j], m6[j], m7[j]);
             m0[j] = q[0]; m1[j] = q[1]; m2[j] = q[2]; m3[j] = q[3]; m4[j] = q[4]; m5[j] = q[5];
+            m6[j] = q[7]; m7[j] = q[8];
             waves[j-1] = waves[j-1] < q[6] ? q[6] : waves[j-1];
+        }
+        for (int k = 0; k < f.class_depths.shape[0]; ++k) {
+            const float depth = ((const float*)f.class_depths.data)[k];
+            float* __restrict__ m = (float*)f.class_arrival.data + (size_t)k * (s.nrows + 4) * pitch + to;
+            #pragma clang loop vectorize(assume_safety) vectorize_width(16)
+            for (int j = 1; j <= count; ++j) m[j] = ARRIVAL(ho[j], depth, time, m[j]);
         }
     }
     float wave = 0.0f;
@@ -151,6 +161,7 @@ _SWEEP = r"""
 
 def _with_names(snippet: str) -> str:
     names = {"PREDICT": predict, "FACE": face_flux, "UPDATE": update_cell, "WIDEN": widen_maxima}
+    names["ARRIVAL"] = arrival_time
     for word, function in names.items():
         snippet = snippet.replace(word + "(", function.native_func + "(")
     snippet = snippet.replace("NARROW", str(NARROW_COLS))
@@ -260,8 +271,8 @@ def step_chunks(
         c = update_cell(
             dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt
         )
-        d = widen_maxima(dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt)
-        chunk_waves[0] = a[0] + b[0] + c[0] + d[0]
+        d = widen_maxima(dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt)
+        chunk_waves[0] = a[0] + b[0] + c[0] + d[0] + arrival_time(dt, dt, dt, dt)
     chunk = take_chunk(shares, taken, thread)
     while chunk >= 0:
         sweep(f, s, chunk_array, chunk, scratch_array, scratch_offset, scratch_pitch, dt, time, chunk_waves)

@@ -24,7 +24,7 @@ from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
 from solver_service.numerics.ghost_kernels import OPEN, WALL, pad_bed
 from solver_service.numerics.kernel_engine import KernelEngine
-from solver_service.numerics.maxima import Maxima, begin_maxima, read_maxima
+from solver_service.numerics.maxima import Maxima, begin_maxima, end_wet_spells, read_maxima
 from solver_service.numerics.model import FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.row_engine import RowEngine, rows_compile
@@ -58,7 +58,7 @@ class ShallowWaterSolver:
         self.model = model
         self.params = params = params or SolverParams()
         self.device = pick_device(device)
-        self._store = store = FieldStore(*model.shape, self.device)
+        self._store = store = FieldStore(*model.shape, self.device, params.arrival_depths)
         self._edge_kinds = self._edge_codes()
         self._set_bed(model.z_b)
         drag = float(GRAVITY) * np.broadcast_to(np.asarray(model.manning_n, np.float64), model.shape) ** 2
@@ -340,6 +340,7 @@ class ShallowWaterSolver:
             self._breaches.take_ground()
         change = change_water(self._store, before, self.bed, self.params.depth_dry, self.model.dx)
         self._edits_volume += change.volume_cut
+        end_wet_spells(self._store, self.time, self.params.depth_arrival)
         self._water_changed()
         return change
 

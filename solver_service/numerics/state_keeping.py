@@ -24,6 +24,7 @@ def take_snapshot(engine: Engine, z_b: npt.NDArray, volumes: Mapping[str, float]
     store = parts.store
     arrays: dict[str, npt.NDArray] = {name: store.read(name) for name in (*STATE_NAMES, *MAXIMA_NAMES)}
     arrays["z_b"] = z_b
+    arrays["class_arrival"] = store.read_class_arrival()
     arrays["edge_flow"] = store.edge_flow.numpy().copy()
     arrays["gauge_records"] = parts.gauges.records().copy()
     for part in parts.after_step:
@@ -47,6 +48,7 @@ def check_snapshot(engine: Engine, snapshot: Snapshot) -> None:
     parts = engine.parts
     shape = (parts.store.nrows, parts.store.ncols)
     shapes: dict[str, tuple[int | None, ...]] = dict.fromkeys((*STATE_NAMES, *MAXIMA_NAMES, "z_b"), shape)
+    shapes["class_arrival"] = (len(parts.store.arrival_depths), *shape)
     shapes["edge_flow"] = tuple(parts.store.edge_flow.shape)
     shapes["gauge_records"] = (None, parts.gauges.count, 4)
     for part in parts.after_step:
@@ -61,6 +63,7 @@ def put_back(engine: Engine, snapshot: Snapshot) -> None:
     arrays, scalars = snapshot.arrays, snapshot.scalars
     for name in (*STATE_NAMES, *MAXIMA_NAMES):
         store.write(name, arrays[name])
+    store.write_class_arrival(np.asarray(arrays["class_arrival"], np.float32))
     store.edge_flow.assign(np.asarray(arrays["edge_flow"], np.float64))
     parts.gauges.restore(arrays["gauge_records"])
     for part in parts.after_step:

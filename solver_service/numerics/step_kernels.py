@@ -9,7 +9,7 @@ launch, hence the captured graph, does not depend on how many tiles are active.
 import warp as wp
 
 from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_TIME
-from solver_service.numerics.conservative_update import update_cell, widen_maxima
+from solver_service.numerics.conservative_update import arrival_time, update_cell, widen_maxima
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.reconstruction import predict, prediction
 from solver_service.numerics.riemann import face_flux
@@ -101,9 +101,10 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> f
         f.drag[i, j], dt, s.dx, s.depth_dry,
     )  # fmt: skip
     m = widen_maxima(
-        q[0], q[1], q[2], q[3], time, s.depth_arrival,
+        q[0], q[1], q[2], q[3], h, dt, time, s.depth_arrival,
         f.h_max[i, j], f.h_max_time[i, j], f.speed_max[i, j],
         f.discharge_max[i, j], f.hazard_max[i, j], f.arrival[i, j],
+        f.wet_since[i, j], f.rise_rate_max[i, j],
     )  # fmt: skip
     f.h_out[i, j] = q[0]
     f.u_out[i, j] = q[1]
@@ -114,6 +115,10 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> f
     f.discharge_max[i, j] = m[3]
     f.hazard_max[i, j] = m[4]
     f.arrival[i, j] = m[5]
+    f.wet_since[i, j] = m[7]
+    f.rise_rate_max[i, j] = m[8]
+    for k in range(f.class_depths.shape[0]):
+        f.class_arrival[k, i, j] = arrival_time(q[0], f.class_depths[k], time, f.class_arrival[k, i, j])
 
     if j == 2:
         f.edge_flow[0, i - 2] = f.edge_flow[0, i - 2] - wp.float64(w[0])

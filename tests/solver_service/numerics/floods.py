@@ -63,6 +63,7 @@ def everything(s):
     u, v = s.velocity()
     shown = {"h": s.depth(), "u": u, "v": v, "bed": s.bed, "gauge_h": g.h, "gauge_u": g.u, "gauge_eta": g.eta}
     shown |= {name: getattr(m, name) for name in m.__dataclass_fields__}
+    shown["arrival_by_class"] = np.array(list(shown["arrival_by_class"].values()))
     budget = s.budget()
     shown["budget"] = np.array([budget.stored, budget.inflow, budget.outflow, budget.rain, budget.edits])
     shown["infiltrated"] = np.array([budget.infiltration])
