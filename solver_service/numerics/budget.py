@@ -13,7 +13,6 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from solver_service.numerics.fields import FieldStore
 from solver_service.numerics.step_part import PartVolumes
@@ -83,30 +82,10 @@ def stored_volume(store: FieldStore, dx: float) -> float:
     return float(store.interior("h").sum(dtype=np.float64)) * dx * dx
 
 
-def edge_volumes(
-    store: FieldStore, dx: float, owners: npt.NDArray[np.int32], names: Iterable[str]
-) -> dict[str, tuple[float, float]]:
-    """Water that came in and went out through each edge segment [m3].
-
-    Args:
-        store: rasters of the run.
-        dx: cell side [m].
-        owners: segment of each edge face, -1 for walls, [4, longest edge].
-        names: names of the segments.
-    """
-    flow = store.edge_flow.numpy() * (dx * dx)
-    volumes = {}
-    for number, name in enumerate(names):
-        through = flow[owners == number]
-        volumes[name] = (float(-through[through < 0.0].sum()), float(through[through > 0.0].sum()))
-    return volumes
-
-
 def close_budget(
     initial: float,
     stored: float,
     edits: float,
-    edges: Mapping[str, tuple[float, float]],
     parts: Iterable[PartVolumes],
 ) -> VolumeBudget:
     """The budget of a run from what each part of the step has booked [m3]."""
@@ -118,7 +97,7 @@ def close_budget(
         infiltration=sum(part.infiltration for part in booked),
         edits=edits + sum(part.edits for part in booked),
         sources={name: volume for part in booked for name, volume in part.sources.items()},
-        edges=edges,
+        edges={name: volumes for part in booked for name, volumes in part.edges.items()},
         structures={name: volume for part in booked for name, volume in part.structures.items()},
         moved={name: volume for part in booked for name, volume in part.moved.items()},
     )

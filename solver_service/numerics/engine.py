@@ -6,10 +6,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
 from solver_service.numerics.active_tiles import ActiveTiles
+from solver_service.numerics.edges import Edges
 from solver_service.numerics.fields import FieldStore, Scheme
 from solver_service.numerics.gauges import GaugeRecorder
 from solver_service.numerics.step_part import StepPart
@@ -27,7 +25,7 @@ class StepParts:
     after_step: tuple[StepPart, ...]
     """Applied in this order after every flux step."""
     gauges: GaugeRecorder
-    edge_kinds: npt.NDArray[np.int32]
+    edges: Edges
     courant: float
     """cfl dx [m]."""
     dt_max: float

@@ -27,7 +27,7 @@ from solver_service.numerics.clock_kernels import (
 )
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
 from solver_service.numerics.gauges import DRAIN_STEPS
-from solver_service.numerics.ghost_kernels import fill_ghost_cells, ghost_cells
+from solver_service.numerics.ghost_kernels import ghost_cells
 from solver_service.numerics.step_kernels import step_active_tiles
 
 WAVE_SLOTS = 256
@@ -48,7 +48,6 @@ class KernelEngine(Engine):
         self._counts = wp.zeros(COUNT_LENGTH, dtype=wp.int32, device=device)
         self._go_on = wp.zeros(1, dtype=wp.int32, device=device)
         self._wave_slots = wp.zeros(WAVE_SLOTS, dtype=wp.float32, device=device)
-        self._kinds = wp.array(parts.edge_kinds, dtype=wp.int32, device=device)
         self._ghosts = wp.array(ghost_cells(store.nrows, store.ncols), dtype=wp.int32, device=device)
         self._threads = CUDA_THREADS if self._is_cuda else CPU_THREADS
         self._graph: wp.Graph | None = None
@@ -124,13 +123,7 @@ class KernelEngine(Engine):
             outputs=[parts.tiles.rest_wave, self._wave_slots, self._clock, self._counts],
             device=device,
         )
-        wp.launch(
-            fill_ghost_cells,
-            dim=self._ghosts.shape[0],
-            inputs=[self._kinds, self._ghosts, store.nrows, store.ncols],
-            outputs=[fields.h, fields.u, fields.v],
-            device=device,
-        )
+        parts.edges.fill(self._clock, fields, self._ghosts, self._wave_slots)
         wp.launch(
             step_active_tiles,
             dim=self._threads,

@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from solver_service.errors import ModelError
 from solver_service.numerics.breach import Breach
-from solver_service.numerics.edge_boundary import EDGES, EdgeBoundary, check_boundaries
-from solver_service.numerics.edge_boundary import Edge as Edge
+from solver_service.numerics.edge_boundary import EdgeBoundary, check_boundaries
 from solver_service.numerics.fields import FloatRaster
 from solver_service.numerics.infiltration import Infiltration
 from solver_service.numerics.inflows import Rain, Source
@@ -83,20 +82,6 @@ class FloodModel:
     def shape(self) -> tuple[int, int]:
         """(nrows, ncols)."""
         return (self.z_b.shape[0], self.z_b.shape[1])
-
-    def edge_segments(self) -> tuple[npt.NDArray[np.int32], list[str]]:
-        """Segment of each edge face, -1 for walls, [4, longest edge], and the names of the segments."""
-        owners = np.full((4, max(self.shape)), -1, np.int32)
-        names: list[str] = []
-        counts = dict.fromkeys(EDGES, 0)
-        for boundary in self.boundaries:
-            faces = owners[EDGES.index(boundary.edge), boundary.first : boundary.last]
-            faces[:] = -1
-            if boundary.kind != "wall":
-                counts[boundary.edge] += 1
-                faces[:] = len(names)
-                names.append(boundary.id or f"{boundary.edge}-{counts[boundary.edge]}")
-        return owners, names
 
     def _check_bed_and_roughness(self) -> None:
         if self.blocked is not None and self.blocked.shape != self.z_b.shape:

@@ -27,7 +27,7 @@ from solver_service.numerics.clock_kernels import (
 )
 from solver_service.numerics.device import warm_kernels
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
-from solver_service.numerics.ghost_kernels import fill_ghost_cells, ghost_cells, ghost_tiles
+from solver_service.numerics.ghost_kernels import ghost_cells, ghost_tiles
 from solver_service.numerics.row_kernels import CHUNK_COLS, SCRATCH_ROWS, step_chunks
 
 LOG = logging.getLogger(__name__)
@@ -63,7 +63,7 @@ class RowEngine(Engine):
         self._threads = threads
         self._pool = ThreadPoolExecutor(threads - 1, "rows") if threads > 1 else None
         self._clock = wp.zeros(CLOCK_LENGTH, dtype=wp.float64, device="cpu")
-        self._kinds = wp.array(parts.edge_kinds, dtype=wp.int32, device="cpu")
+        self._clock_view = self._clock.numpy()
         self._all_ghosts = ghost_cells(store.nrows, store.ncols)
         self._scratch_size = SCRATCH_ROWS * SCRATCH_PITCH
         self._scratch = wp.zeros(threads * self._scratch_size, dtype=wp.float32, device="cpu")
@@ -80,7 +80,12 @@ class RowEngine(Engine):
         self._taken_view, self._share_view = self._taken.numpy(), self._shares.numpy()
         self._chunk_waves = np.zeros(0, np.float32)
         self._refreshes = [parts.tiles.refresh(fields, record=True) for fields in store.fields]
-        self._ghost_launches = [self._record_ghosts(parity) for parity in (0, 1)]
+        self._edge_wave = wp.zeros(1, dtype=wp.float32, device="cpu")
+        self._edge_wave_view = self._edge_wave.numpy()
+        self._ghost_launches = [
+            parts.edges.fill(self._clock, fields, self._ghosts, self._edge_wave, record=True)
+            for fields in store.fields
+        ]
         self._sweeps = [
             [self._record_sweep(parity, thread) for thread in range(threads)] for parity in (0, 1)
         ]
@@ -106,8 +111,12 @@ class RowEngine(Engine):
         if stable < parts.dt_min:
             raise StepCollapse
         parity = store.parity
+        clock = self._clock_view
+        clock[[int(CLOCK_BEFORE), int(CLOCK_TIME), int(CLOCK_DT)]] = self.time, after, dt
+        self._edge_wave_view[0] = 0.0
         if self._ghost_count:
-            self._ghost_launches[parity].launch()
+            for launch in self._ghost_launches[parity]:
+                launch.launch()
         sweeps = self._sweeps[parity][: len(self._chunk_waves)]
         self._taken_view[:] = self._share_view[:-1]
         for sweep in sweeps:
@@ -118,14 +127,14 @@ class RowEngine(Engine):
             sweeps[0].launch()
         for future in futures:
             future.result()
-        before, self.time, self.dt = self.time, after, dt
+        self.time, self.dt = after, dt
         self.step_count += 1
-        self.wave_speed = float(self._chunk_waves.max()) if sweeps else 0.0
+        self.wave_speed = max(
+            float(self._chunk_waves.max()) if sweeps else 0.0, float(self._edge_wave_view[0])
+        )
         fields = store.fields[parity]
         store.parity = 1 - parity
         if parts.after_step or parts.gauges.is_due(after):
-            clock = self._clock.numpy()
-            clock[[int(CLOCK_BEFORE), int(CLOCK_TIME), int(CLOCK_DT)]] = before, after, dt
             for part in parts.after_step:
                 part.apply(self._clock, fields)
             if parts.gauges.is_due(after):
@@ -151,7 +160,7 @@ class RowEngine(Engine):
         self._ghost_count = ghosts.size
         self._ghosts.numpy()[: ghosts.size] = ghosts
         for parity in (0, 1):
-            self._ghost_launches[parity].set_dim(max(1, ghosts.size))
+            self._ghost_launches[parity][-1].set_dim(max(1, ghosts.size))
 
     def _record_sweep(self, parity: int, thread: int) -> wp.Launch:
         return wp.launch(
@@ -170,18 +179,6 @@ class RowEngine(Engine):
                 self._shares,
             ],
             outputs=[self._taken, self._waves],
-            device="cpu",
-            record_cmd=True,
-        )
-
-    def _record_ghosts(self, parity: int) -> wp.Launch:
-        store = self.parts.store
-        fields = store.fields[parity]
-        return wp.launch(
-            fill_ghost_cells,
-            dim=1,
-            inputs=[self._kinds, self._ghosts, store.nrows, store.ncols],
-            outputs=[fields.h, fields.u, fields.v],
             device="cpu",
             record_cmd=True,
         )

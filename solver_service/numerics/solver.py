@@ -14,15 +14,15 @@ from solver_service.numerics.after_step import changeable_cells, parts_of
 from solver_service.numerics.bed_change import BedChange, change_water, check_bed
 from solver_service.numerics.breach import BreachState
 from solver_service.numerics.breaches import Breaches
-from solver_service.numerics.budget import VolumeBudget, close_budget, edge_volumes, stored_volume
+from solver_service.numerics.budget import VolumeBudget, close_budget, stored_volume
 from solver_service.numerics.conduits import Conduits, ConduitState
 from solver_service.numerics.device import pick_device, thread_count, warm_kernels
-from solver_service.numerics.edge_boundary import EDGES
+from solver_service.numerics.edges import Edges
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
 from solver_service.numerics.fields import STATE_NAMES, TILE, FieldStore, FloatRaster, Scheme
 from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
-from solver_service.numerics.ghost_kernels import OPEN, WALL, pad_bed
+from solver_service.numerics.ghost_kernels import pad_bed, pad_drag
 from solver_service.numerics.kernel_engine import KernelEngine
 from solver_service.numerics.maxima import Maxima, begin_maxima, end_wet_spells, read_maxima
 from solver_service.numerics.model import FloodModel
@@ -59,12 +59,13 @@ class ShallowWaterSolver:
         self.params = params = params or SolverParams()
         self.device = pick_device(device)
         self._store = store = FieldStore(*model.shape, self.device, params.arrival_depths)
-        self._edge_kinds = self._edge_codes()
+        self._edges = Edges(model, params, store)
         self._set_bed(model.z_b)
         drag = float(GRAVITY) * np.broadcast_to(np.asarray(model.manning_n, np.float64), model.shape) ** 2
-        store.write_padded("drag", np.pad(drag.astype(np.float32), 2, mode="symmetric"))
+        store.write_padded("drag", pad_drag(drag.astype(np.float32), self._edges.segment))
         self._tiles = ActiveTiles(store, params.depth_film, model.infiltration is not None)
-        self._after_step = parts_of(model, params, store, self._tiles)
+        at_edges = (self._edges,) if self._edges.count else ()
+        self._after_step = at_edges + parts_of(model, params, store, self._tiles)
         self._breaches = next((part for part in self._after_step if isinstance(part, Breaches)), None)
         self._conduits = next((part for part in self._after_step if isinstance(part, Conduits)), None)
         self._tiles.keep_awake(changeable_cells(self._after_step, model.shape))
@@ -76,22 +77,15 @@ class ShallowWaterSolver:
         self._edits_volume = 0.0
         self.set_water(np.zeros(model.shape, np.float32))
 
-    def _edge_codes(self) -> npt.NDArray[np.int32]:
-        kinds = np.full((4, max(self.model.shape)), WALL, np.int32)
-        for boundary in self.model.boundaries:
-            kinds[EDGES.index(boundary.edge), boundary.first : boundary.last] = (
-                OPEN if boundary.kind == "open" else WALL
-            )
-        return kinds
-
     def _set_bed(self, z_b: FloatRaster) -> None:
         self._z_b = z_b.copy()
         self._store.write_padded("z", self._walled(z_b))
+        self._edges.set_bed(z_b)
 
     def _walled(self, z_b: FloatRaster) -> FloatRaster:
         if self.model.blocked is not None:
             z_b = np.where(self.model.blocked, z_b.max() + np.float32(WALL_HEIGHT), z_b)
-        return pad_bed(z_b, self._edge_kinds)
+        return pad_bed(z_b, self._edges.segment)
 
     def _scheme(self) -> Scheme:
         params, scheme = self.params, Scheme()
@@ -114,7 +108,7 @@ class ShallowWaterSolver:
             tiles=self._tiles,
             after_step=self._after_step,
             gauges=self._gauges,
-            edge_kinds=self._edge_kinds,
+            edges=self._edges,
             courant=courant,
             dt_max=self._dt_max,
             dt_min=params.dt_min,
@@ -177,7 +171,7 @@ class ShallowWaterSolver:
         return array
 
     def _water_changed(self) -> None:
-        self._engine.wave_speed = float(self._wave_speeds().max())
+        self._engine.wave_speed = max(float(self._wave_speeds().max()), self._edges.wave_speed(self.time))
 
     def _wave_speeds(self) -> FloatRaster:
         h, u, v = (self._store.interior(name) for name in STATE_NAMES)
@@ -283,7 +277,6 @@ class ShallowWaterSolver:
             self._initial_volume,
             stored_volume(self._store, dx),
             self._edits_volume,
-            edge_volumes(self._store, dx, *self.model.edge_segments()),
             (part.volumes() for part in self._after_step),
         )
 
@@ -338,6 +331,7 @@ class ShallowWaterSolver:
         self._set_bed(bed)
         if self._breaches is not None:
             self._breaches.take_ground()
+        self._edges.change_rest(before, self.bed)
         change = change_water(self._store, before, self.bed, self.params.depth_dry, self.model.dx)
         self._edits_volume += change.volume_cut
         end_wet_spells(self._store, self.time, self.params.depth_arrival)

@@ -33,6 +33,8 @@ class PartVolumes:
     """Brought by each source."""
     structures: Mapping[str, float] = field(default_factory=dict)
     """Taken out of the domain by each structure; negative for what it brought."""
+    edges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Come in and gone out through each edge segment."""
     moved: Mapping[str, float] = field(default_factory=dict)
     """Moved from place to place by each structure, which the budget of the whole does not see."""
 

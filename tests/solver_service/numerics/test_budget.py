@@ -12,8 +12,8 @@ BOOKED = close_budget(
     initial=100.0,
     stored=117.0,
     edits=2.0,
-    edges={"west-1": (30.0, 4.0), "tide": (0.0, 6.0)},
     parts=(
+        PartVolumes(edges={"west-1": (30.0, 4.0), "tide": (0.0, 6.0)}),
         PartVolumes(structures={"pump": 5.0}, moved={"culvert": 7.0}, edits=1.0),
         PartVolumes(rain=8.0, sources={"a": 10.0, "b": 1.0}),
         PartVolumes(infiltration=13.0),
