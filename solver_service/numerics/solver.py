@@ -23,6 +23,7 @@ from solver_service.numerics.fields import STATE_NAMES, TILE, FieldStore, FloatR
 from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
 from solver_service.numerics.ghost_kernels import pad_bed, pad_drag
+from solver_service.numerics.infiltration import GroundUptake
 from solver_service.numerics.kernel_engine import KernelEngine
 from solver_service.numerics.maxima import Maxima, begin_maxima, end_wet_spells, read_maxima
 from solver_service.numerics.model import FloodModel
@@ -279,6 +280,11 @@ class ShallowWaterSolver:
             self._edits_volume,
             (part.volumes() for part in self._after_step),
         )
+
+    def infiltrated(self) -> FloatRaster | None:
+        """Depth that the ground has taken since the start [m], a host copy; None without infiltration."""
+        uptake = next((part for part in self._after_step if isinstance(part, GroundUptake)), None)
+        return None if uptake is None else uptake.depth
 
     def breach_states(self) -> tuple[BreachState, ...]:
         """How far each breach of the model has grown."""

@@ -11,19 +11,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from solver_service.errors import RunError
-from solver_service.numerics import Maxima, ShallowWaterSolver, pick_device
-from solver_service.offline.maps import write_map
+from solver_service.numerics import ShallowWaterSolver, pick_device
 from solver_service.offline.output_folder import output_folder
+from solver_service.offline.result_maps import write_maps
 from solver_service.offline.series_tables import write_gauges, write_sections
+from solver_service.offline.structure_table import StructureLog, write_structures
+from solver_service.offline.summary import SmallestStep, summarise
 from solver_service.offline.timesteps import NetcdfTimesteps, TimestepFacts, TimestepWriter, ZarrTimesteps
 from solver_service.scenario import Case
 
 OnFrame = Callable[[float, float], None]
-DEPTH_SHOWN = 1e-3
-"""Depth [m] from which a map shows a cell."""
 
 
 @dataclass(frozen=True)
@@ -102,10 +100,11 @@ class _Run:
 
     def __init__(self, case: Case, device: str, threads: int | None) -> None:
         self.case = case
-        self.device = device
         params = dataclasses.replace(case.params, threads=threads or case.params.threads)
         self.solver = ShallowWaterSolver(case.model, params, device)
         self.solver.set_water(case.initial_h)
+        self.structures = StructureLog(case.grid.datum_offset)
+        self.smallest = SmallestStep(case.grid)
 
     def compute(
         self, until: float, writers: list[TimestepWriter], on_frame: OnFrame | None
@@ -115,6 +114,7 @@ class _Run:
         frames = math.ceil(until / interval - 1e-9)
         for writer in writers:
             writer.append(0.0, self.solver.depth())
+        self.structures.record(self.solver)
         began = clock.perf_counter()
         for number in range(1, frames + 1):
             # The same product as a run of the service makes, so that both land on the same times.
@@ -122,42 +122,12 @@ class _Run:
             self.solver.advance_to(time)
             for writer in writers:
                 writer.append(time, self.solver.depth())
+            self.structures.record(self.solver)
+            self.smallest.look(self.solver)
             if on_frame is not None:
                 on_frame(time, until)
-        return self._summary(until, clock.perf_counter() - began, frames)
-
-    def _summary(self, until: float, wall_s: float, frames: int) -> dict[str, Any]:
-        case, solver = self.case, self.solver
-        maxima, budget = solver.maxima(), solver.budget()
-        cells, steps = case.grid.cell_count, solver.step_count
-        wet = maxima.h > DEPTH_SHOWN
-        return {
-            "case": case.name,
-            "title": case.title,
-            "hypothetical": case.hypothetical,
-            "cells": cells,
-            "nrows": case.grid.nrows,
-            "ncols": case.grid.ncols,
-            "cell_size_m": case.grid.dx,
-            "steps": steps,
-            "frames": frames + 1,
-            "sim_time_s": until,
-            "wall_s": wall_s,
-            "cell_steps_per_s": cells * steps / wall_s if wall_s > 0.0 else 0.0,
-            "speed_x_real_time": until / wall_s if wall_s > 0.0 else 0.0,
-            "volume_initial_m3": budget.initial,
-            "volume_stored_m3": budget.stored,
-            "volume_inflow_m3": budget.inflow,
-            "volume_rain_m3": budget.rain,
-            "volume_outflow_m3": budget.outflow,
-            "volume_error_relative": budget.error_relative,
-            "max_depth_m": float(maxima.h.max()),
-            "max_speed_m_s": float(maxima.speed.max()),
-            "flooded_area_m2": float(np.count_nonzero(wet)) * case.grid.dx**2,
-            "device": self.device,
-            "source": case.source,
-            "licence": case.licence,
-        }
+        wall_s = clock.perf_counter() - began
+        return summarise(self.case, self.solver, self.smallest, frames + 1, wall_s)
 
     def write(self, folder: Path) -> None:
         """Write maps and tables.
@@ -165,25 +135,8 @@ class _Run:
         Raises:
             OSError: a file cannot be written.
         """
-        series, maxima = self.solver.gauge_series(), self.solver.maxima()
+        series = self.solver.gauge_series()
         write_gauges(folder / "gauges.csv", self.case, series)
         write_sections(folder / "sections.csv", self.case, series)
-        write_maps(folder, self.case, maxima)
-
-
-def write_maps(folder: Path, case: Case, maxima: Maxima) -> None:
-    """Write the four maps; cells that stayed dry hold no value.
-
-    Raises:
-        OSError: a file cannot be written.
-    """
-    wet = maxima.h > DEPTH_SHOWN
-    for name, values, unit, meaning in (
-        ("max_depth", maxima.h, "m", "largest depth"),
-        ("max_speed", maxima.speed, "m/s", "largest speed where deeper than 0.05 m"),
-        ("max_hazard", maxima.hazard, "", "largest hazard rating d (v + 0.5) + DF"),
-    ):
-        shown = np.where(wet, values, np.float32(np.nan)).astype(np.float32)
-        write_map(folder / f"{name}.tif", shown, case.grid, unit, meaning)
-    meaning = f"first time deeper than {case.params.depth_arrival:g} m"
-    write_map(folder / "arrival_time.tif", maxima.arrival_time, case.grid, "s", meaning)
+        write_structures(folder / "structures.csv", self.structures)
+        write_maps(folder, self.case, self.solver)

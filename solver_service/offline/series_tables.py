@@ -26,7 +26,7 @@ def write_gauges(path: Path, case: Case, series: GaugeSeries) -> None:
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write(GAUGE_COLUMNS + "\n")
         for column, gauge in enumerate(case.gauges):
-            name = _quoted(gauge.id)
+            name = quoted(gauge.id)
             rows = zip(
                 series.times.tolist(),
                 series.h[:, column].tolist(),
@@ -65,12 +65,13 @@ def write_sections(path: Path, case: Case, series: GaugeSeries) -> None:
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write(SECTION_COLUMNS + "\n")
         for section, (discharge, area) in zip(case.sections, section_discharge(case, series), strict=True):
-            name = _quoted(section.id)
+            name = quoted(section.id)
             rows = zip(series.times.tolist(), discharge.tolist(), area.tolist(), strict=True)
             file.writelines(f"{t:.10g},{name},{q:.4f},{a:.4f}\n" for t, q, a in rows)
 
 
-def _quoted(name: str) -> str:
+def quoted(name: str) -> str:
+    """A name as a cell of a CSV file."""
     if set(name) & set(',"\r\n'):
         return '"' + name.replace('"', '""') + '"'
     return name

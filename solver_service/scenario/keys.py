@@ -109,7 +109,9 @@ KEYS: dict[str, frozenset[str]] = {
             "order",
             "riemann",
             "depth_dry",
+            "depth_film",
             "depth_arrival",
+            "arrival_depths",
         }
     ),
     "demo": frozenset({"time", "target", "edit"}),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Literal, cast
 
 from solver_service.numerics import SolverParams
@@ -9,6 +10,8 @@ from solver_service.scenario.table import Table
 
 MAX_DURATION = 1e9
 MAX_FRAMES = 1_000_000
+MAX_CLASSES = 8
+"""Depth classes; each costs 4 bytes a cell."""
 
 
 def read_times(run: Table) -> tuple[float, float]:
@@ -47,7 +50,14 @@ def read_params(run: Table, gauges: tuple[tuple[float, float], ...]) -> SolverPa
         order=cast(Literal[1, 2], order),
         riemann=cast(Literal["hllc", "hll"], run.choice("riemann", ("hllc", "hll"), default.riemann)),
         depth_dry=depth_dry,
-        depth_film=min(default.depth_film, depth_dry),
+        depth_film=run.real(
+            "depth_film",
+            f"a depth in m from 0.00000001 to depth_dry ({depth_dry:g})",
+            1e-8,
+            depth_dry,
+            default=min(default.depth_film, depth_dry),
+        ),
+        arrival_depths=_arrival_depths(run),
         depth_arrival=run.real(
             "depth_arrival", "a depth in m above 0", 0.0, 10.0, default=default.depth_arrival, above=True
         ),
@@ -61,3 +71,17 @@ def read_params(run: Table, gauges: tuple[tuple[float, float], ...]) -> SolverPa
             above=True,
         ),
     )
+
+
+def _arrival_depths(run: Table) -> tuple[float, ...]:
+    """Depth classes [m] whose arrival times are kept."""
+    if not run.has("arrival_depths"):
+        return ()
+    given = run.values["arrival_depths"]
+    count = len(given) if isinstance(given, list) else 0
+    depths = run.numbers("arrival_depths", count) if 0 < count <= MAX_CLASSES else ()
+    if not depths or depths[0] <= 0.0 or any(a >= b for a, b in itertools.pairwise(depths)):
+        raise run.wrong(
+            "arrival_depths", f"1 to {MAX_CLASSES} depths in m above 0, each above the last, are allowed"
+        )
+    return depths

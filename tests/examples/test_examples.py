@@ -51,4 +51,4 @@ def test_the_synthetic_valley_is_written_and_floods_its_village(tmp_path: Path) 
     village = gauge(tmp_path / "out", "village")
     assert village[0.0] == 0.0
     assert max(village.values()) > 0.5
-    assert figures["volume_initial_m3"] > 1e5
+    assert figures["water_budget_m3"]["initial"] > 1e5

@@ -40,10 +40,14 @@ def test_every_result_is_there_and_nothing_else(out: Path) -> None:
         "max_depth.tif",
         "max_hazard.tif",
         "max_speed.tif",
+        "rise_rate.tif",
         "sections.csv",
+        "structures.csv",
         "summary.json",
+        "time_of_max.tif",
         "timesteps.nc",
         "timesteps.zarr",
+        "wet_duration.tif",
     ]
     assert [path.name for path in out.parent.iterdir()] == ["out"]
 
@@ -57,7 +61,7 @@ def test_the_summary_keeps_the_contract(case: Case, out: Path) -> None:
     assert summary["steps"] > 20
     assert abs(summary["volume_error_relative"]) < 1e-6
     assert summary["cell_steps_per_s"] == pytest.approx(960 * summary["steps"] / summary["wall_s"])
-    assert summary["volume_initial_m3"] == pytest.approx(case.initial_h.sum() * 100.0, rel=1e-6)
+    assert summary["water_budget_m3"]["initial"] == pytest.approx(case.initial_h.sum() * 100.0, rel=1e-6)
     assert 1.0 < summary["max_speed_m_s"] < 20.0
 
 
@@ -103,7 +107,7 @@ def test_what_passes_the_dam_arrives_below_it(case: Case, out: Path) -> None:
         below = float(file["depth"][-1, :, 10:].sum()) * 100.0
     budget = json.loads((out / "summary.json").read_text())
 
-    assert passed == pytest.approx(below + budget["volume_outflow_m3"], rel=0.15)
+    assert passed == pytest.approx(below + budget["water_budget_m3"]["outflow"], rel=0.15)
 
 
 def test_zarr_and_netcdf_hold_the_same_bits(out: Path) -> None:
@@ -126,7 +130,7 @@ def test_the_run_is_the_same_on_one_thread_and_two(case: Case) -> None:
     one = run_case(case, CPU)
     two = run_case(case, OfflineOptions(device="cpu", threads=2))
 
-    for name in ("steps", "volume_stored_m3", "max_depth_m", "max_speed_m_s"):
+    for name in ("steps", "water_budget_m3", "max_depth_m", "max_speed_m_s"):
         assert one[name] == two[name]
 
 
