@@ -55,11 +55,19 @@ class RunRow:
 
 @dataclass(frozen=True)
 class EditRow:
-    """An edit of the working list; `is_applied`: the shown run was computed with it."""
+    """An edit of the working list.
+
+    Attributes:
+        is_applied: the shown run was computed with it.
+        measure: length and volume in words.
+        warning: when and where it was first seen overtopped, in words; empty when it was not.
+    """
 
     id: str
     text: str
     is_applied: bool
+    measure: str = ""
+    warning: str = ""
 
 
 @dataclass(frozen=True)

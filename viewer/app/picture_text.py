@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import protocol
 from viewer.app.edit_drawing import EditDrawing, edit_text
+from viewer.app.levee_watch import LeveeWatch, Overtopping
 from viewer.app.recalculation import Recalculation
 from viewer.app.shown_run import ShownRun
 from viewer.render import DrapedLine, EditOverlay, HudText, LineStyle
 from viewer.view_status import EditRow, PointReadout, time_text
-from viewer.world import ProbeReading
+from viewer.world import EditMeasure, ProbeReading
 
 __all__ = ["edit_overlay", "edit_rows", "hud_text", "loss_notice", "readout"]
 
@@ -75,10 +76,36 @@ def edit_overlay(shown: ShownRun, drawing: EditDrawing) -> EditOverlay | None:
     return EditOverlay(shown.overlay_revision(), preview.sign, tuple(lines))
 
 
-def edit_rows(edits: Sequence[protocol.Edit], applied: Sequence[protocol.Edit]) -> tuple[EditRow, ...]:
-    """Return the working list for the edit panel."""
+def edit_rows(shown: ShownRun, applied: Sequence[protocol.Edit], watch: LeveeWatch) -> tuple[EditRow, ...]:
+    """Return the working list for the edit panel.
+
+    Args:
+        shown: the run with the list.
+        applied: the edits that the run was computed with.
+        watch: knows the measures, and what was overtopped.
+    """
     applied_ids = {edit.id for edit in applied}
-    return tuple(EditRow(edit.id, edit_text(edit), edit.id in applied_ids) for edit in edits)
+    return tuple(
+        EditRow(
+            edit.id,
+            edit_text(edit),
+            edit.id in applied_ids,
+            _measure_text(measure),
+            _warning_text(watch.overtopping(shown, edit.id)),
+        )
+        for edit, measure in zip(shown.document.edits, watch.measures(shown), strict=True)
+    )
+
+
+def _measure_text(measure: EditMeasure) -> str:
+    moved = "fill" if measure.volume >= 0.0 else "cut"
+    return f"{measure.length:,.0f} m long, {abs(measure.volume):,.0f} m\u00b3 of {moved}"
+
+
+def _warning_text(overtopping: Overtopping | None) -> str:
+    if overtopping is None:
+        return ""
+    return f"overtopped at {time_text(overtopping.time)} near x {overtopping.x:.0f}, y {overtopping.y:.0f}"
 
 
 def readout(reading: ProbeReading | None) -> PointReadout | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from viewer.app.edit_drawing import EditDrawing
+from viewer.app.levee_watch import LeveeWatch
 from viewer.app.picture_text import edit_rows, readout
 from viewer.app.recalculation import Recalculation
 from viewer.app.service_desk import ServiceDesk
@@ -37,7 +38,11 @@ def program_status(desk: ServiceDesk, clock: PlaybackClock, drawing: EditDrawing
 
 
 def run_status(
-    status: ViewStatus, shown: ShownRun, desk: ServiceDesk, recalculated: Recalculation | None
+    status: ViewStatus,
+    shown: ShownRun,
+    desk: ServiceDesk,
+    recalculated: Recalculation | None,
+    watch: LeveeWatch,
 ) -> ViewStatus:
     """Return `status` with what is known of the shown run."""
     info, document = shown.info, shown.document
@@ -53,7 +58,7 @@ def run_status(
         duration=info.duration,
         output_interval=info.output_interval,
         branch_time=None if info.branch_index is None else info.branch_index * info.output_interval,
-        edits=edit_rows(document.edits, desk.book.edits_below(shown.run, document.revision)),
+        edits=edit_rows(shown, desk.book.edits_below(shown.run, document.revision), watch),
         can_undo=document.can_undo and desk.is_open,
         can_redo=document.can_redo and desk.is_open,
         can_recalculate=desk.is_open and len(shown.timeline) > 0 and not is_waiting,

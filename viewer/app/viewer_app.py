@@ -12,6 +12,7 @@ import time as wall_clock
 
 import protocol
 from viewer.app.camera_work import CameraWork
+from viewer.app.levee_watch import LeveeWatch
 from viewer.app.map_maker import MapMaker
 from viewer.app.picture_text import edit_overlay, hud_text, loss_notice
 from viewer.app.recalculation import Recalculation
@@ -106,6 +107,7 @@ class ViewerApp:
         self._status_made = -math.inf
         self._status = ViewStatus()
         self._map_maker = MapMaker()
+        self._levee_watch = LeveeWatch()
 
     @property
     def desk(self) -> ServiceDesk:
@@ -215,6 +217,7 @@ class ViewerApp:
             changed |= self._advance_clock(shown, wall_dt)
             if not self.control.is_held:
                 changed |= self.feed.advance(shown, self.clock.time)
+            self._status_stale |= self._levee_watch.look(shown, self.feed, self.options.depth_shown)
         if changed:
             self._status_stale = True
         return changed
@@ -353,7 +356,7 @@ class ViewerApp:
         if self.shown is None:
             return status
         return dataclasses.replace(
-            run_status(status, self.shown, self.desk, self.recalculated),
+            run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch),
             hover=point_readout(self.shown, self.feed, self._hover_at),
             probe=point_readout(self.shown, self.feed, self._probe_at),
             depth_record=depth_record(self.shown, self.loader) if self._probe_at is not None else ((), ()),

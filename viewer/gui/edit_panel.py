@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtGui import QAction, QColor, QKeySequence
 from PySide6.QtWidgets import (
     QButtonGroup,
     QDoubleSpinBox,
@@ -11,6 +11,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QListWidget,
+    QListWidgetItem,
     QPushButton,
     QSizePolicy,
     QToolButton,
@@ -20,7 +21,8 @@ from PySide6.QtWidgets import (
 
 from viewer.commands import BeginEdit, CancelEdit, ChangeEditSettings, FinishEdit, Recalculate, Redo, Undo
 from viewer.gui.conductor import Dispatch
-from viewer.view_status import ViewStatus, time_text
+from viewer.gui.theme import BRANCH
+from viewer.view_status import EditRow, ViewStatus, time_text
 
 __all__ = ["EditPanel"]
 
@@ -93,10 +95,13 @@ class EditPanel(QWidget):
                 box.blockSignals(blocked)
         self.operation.show_choice(settings.operation)
         self.kind.show_choice(settings.type)
-        texts = [f"{'' if row.is_applied else 'new: '}{row.text}" for row in status.edits]
+        texts = [_row_text(row) for row in status.edits]
         if texts != [self.edits.item(row).text() for row in range(self.edits.count())]:
             self.edits.clear()
-            self.edits.addItems(texts)
+            for text, row in zip(texts, status.edits, strict=True):
+                item = QListWidgetItem(text, self.edits)
+                if row.warning:
+                    item.setForeground(QColor(BRANCH))
         self.undo.setEnabled(status.can_undo)
         self.redo.setEnabled(status.can_redo)
         self.recalculate.setEnabled(status.can_recalculate)
@@ -175,6 +180,11 @@ class _Choice(QWidget):
         """Press the button of `key`."""
         if key in self.buttons:
             self.buttons[key].setChecked(True)
+
+
+def _row_text(row: EditRow) -> str:
+    first = f"{'' if row.is_applied else 'new: '}{row.text}"
+    return "\n".join(line for line in (first, row.measure, row.warning) if line)
 
 
 def _note(status: ViewStatus) -> str:

@@ -9,6 +9,7 @@ from viewer.world.depth_classes import (
     depth_class_labels,
 )
 from viewer.world.edit_document import EditDocument, EditPreview
+from viewer.world.edit_measures import EditMeasure, measure_edits
 from viewer.world.frame_cache import FrameCache
 from viewer.world.frustum import Frustum
 from viewer.world.heightfield import Heightfield, Rect, union_rect
@@ -24,6 +25,7 @@ __all__ = [
     "Bracket",
     "Camera",
     "EditDocument",
+    "EditMeasure",
     "EditPreview",
     "Flight",
     "FrameCache",
@@ -43,6 +45,7 @@ __all__ = [
     "depth_class_labels",
     "flood_extent",
     "ground_in_view",
+    "measure_edits",
     "overview",
     "probe",
     "relief_map",

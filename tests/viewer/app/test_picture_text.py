@@ -2,6 +2,7 @@ import protocol
 from tests.viewer.app.test_run_book import edit, info
 from tests.viewer.tiny_service import valley
 from viewer.app.edit_drawing import EditDrawing
+from viewer.app.levee_watch import LeveeWatch
 from viewer.app.picture_text import edit_overlay, edit_rows, hud_text, loss_notice, readout
 from viewer.app.recalculation import Recalculation
 from viewer.app.shown_run import ShownRun
@@ -56,9 +57,12 @@ def test_the_line_being_drawn_lies_on_the_ground_with_the_edits() -> None:
 
 
 def test_an_edit_counts_as_computed_only_when_the_run_has_it() -> None:
-    rows = edit_rows([edit("one"), edit("two")], [edit("one")])
+    run = shown(info("a"))
+    run.document.mirror(1, [edit("one"), edit("two")], True, False)
+    rows = edit_rows(run, [edit("one")], LeveeWatch())
 
-    assert [(row.id, row.is_applied) for row in rows] == [("one", True), ("two", False)]
+    assert [(row.id, row.is_applied, row.warning) for row in rows] == [("one", True, ""), ("two", False, "")]
+    assert all(" m long, " in row.measure and row.measure.endswith(" m\u00b3 of fill") for row in rows)
 
 
 def test_a_reading_becomes_a_readout() -> None:

@@ -1,5 +1,6 @@
 from tests.viewer.app.conftest import Flight
 from tests.viewer.tiny_service import INTERVAL, TinyService
+from viewer.app.levee_watch import LeveeWatch
 from viewer.app.status_report import point_readout, program_status, run_status
 from viewer.commands import Pause, Seek
 
@@ -18,7 +19,7 @@ def test_the_program_part_needs_no_run() -> None:
 def test_the_run_part_says_what_can_be_done_now(flight: Flight) -> None:
     app = flight.app
     status = program_status(app.desk, app.clock, app.control.editing.drawing, "")
-    made = run_status(status, flight.shown, app.desk, None)
+    made = run_status(status, flight.shown, app.desk, None, LeveeWatch())
 
     assert (made.can_recalculate, made.can_undo, made.is_recalculating) == (True, False, False)
     assert (made.computed_until, made.duration) == (19 * INTERVAL, 39 * INTERVAL)
