@@ -8,6 +8,7 @@ import warp as wp
 
 from solver_service.numerics.fields import TILE, Fields, FieldStore
 from solver_service.numerics.tile_kernels import classify_tiles, list_active_tiles
+from solver_service.numerics.tile_list_kernels import list_tiles, scan_tiles
 
 REFRESH_STEPS = 4
 """Steps for which a list stays valid: half a tile at two cells a step; even (see `kernel_engine`)."""
@@ -33,10 +34,10 @@ class ActiveTiles:
         self._quadrants = wp.zeros(count, dtype=wp.int32, device=store.device)
         self._tile_wave = wp.zeros(count, dtype=wp.float32, device=store.device)
         self.rest_wave = wp.zeros(2, dtype=wp.float32, device=store.device)
-        self._is_first = wp.zeros(2, dtype=wp.int32, device=store.device)
+        self.is_first = wp.zeros(2, dtype=wp.int32, device=store.device)
         self.active = wp.zeros(count, dtype=wp.int32, device=store.device)
         self.tiles = wp.zeros(count, dtype=wp.int32, device=store.device)
-        self.count = wp.zeros(1, dtype=wp.int32, device=store.device)
+        self.count = wp.zeros(3, dtype=wp.int32, device=store.device)
 
     def keep_awake(self, cells: npt.NDArray[np.bool_]) -> None:
         """Let the tiles of some cells, [nrows, ncols], and those around them never sleep."""
@@ -47,7 +48,7 @@ class ActiveTiles:
 
     def begin_interval(self) -> None:
         """Let the next list depend on the present state alone."""
-        self._is_first.fill_(1)
+        self.is_first.fill_(1)
 
     def refresh(self, fields: Fields, record: bool = False) -> list[wp.Launch]:
         """Renew the list from the state `h`, `u`, `v` of `fields`, or record the launches that do so."""
@@ -67,7 +68,7 @@ class ActiveTiles:
                     self.cols,
                     self.active,
                     self._forced,
-                    self._is_first,
+                    self.is_first,
                 ],
                 outputs=[self._quadrants, self.count, self.rest_wave],
                 device=store.device,
@@ -84,7 +85,7 @@ class ActiveTiles:
                     self.active,
                     self.tiles,
                     self.count,
-                    self._is_first,
+                    self.is_first,
                     self._tile_wave,
                     self.rest_wave,
                 ],
@@ -93,6 +94,50 @@ class ActiveTiles:
             ),
         ]
         return [launch for launch in launches if launch is not None]
+
+    def refresh_by_blocks(self, fields: Fields, blocks: int, lanes: int, host_memory: wp.array) -> None:
+        """As `refresh`, by thread blocks, after `decide_and_begin_list`; see `tile_list_kernels`.
+
+        Args:
+            fields: see `refresh`.
+            blocks: thread blocks that look at tiles.
+            lanes: threads of a block.
+            host_memory: memory of a block on the CPU.
+        """
+        store = self._store
+        wp.launch(
+            scan_tiles,
+            dim=blocks * lanes,
+            inputs=[
+                fields.h,
+                fields.u,
+                fields.v,
+                fields.h_out,
+                self._depth_film,
+                self._is_wet_lively,
+                store.nrows,
+                store.ncols,
+                self.rows,
+                self.cols,
+                self.tiles,
+                self.count,
+                self._forced,
+                self.is_first,
+                blocks,
+                host_memory,
+            ],
+            outputs=[self._quadrants, self._tile_wave],
+            device=store.device,
+            block_dim=lanes,
+        )
+        wp.launch(
+            list_tiles,
+            dim=self.rows * self.cols,
+            inputs=[self._quadrants, self._tile_wave, self.is_first, self.rows, self.cols],
+            outputs=[self.active, self.tiles, self.count, self.rest_wave],
+            device=store.device,
+            block_dim=lanes,
+        )
 
     def mask(self) -> npt.NDArray[np.bool_]:
         """Active tiles, [tile rows, tile columns]."""

@@ -22,20 +22,6 @@ from solver_service.numerics.warp_modules import (
 
 LOCK_POLL_S = 0.2
 
-KERNEL_FILES = (
-    "breach_kernels",
-    "clock_kernels",
-    "conduit_kernels",
-    "forcing_kernels",
-    "gauge_kernels",
-    "ghost_kernels",
-    "infiltration_kernels",
-    "row_kernels",
-    "step_kernels",
-    "tile_kernels",
-    "wet_block_kernels",
-)
-
 
 def device_names() -> list[str]:
     """Devices that can compute here, `cpu` first."""
@@ -84,10 +70,10 @@ def _compiler_lock() -> Iterator[None]:
         yield
 
 
-def _import_kernels() -> None:
-    """Let every kernel file register its kernels."""
-    for name in KERNEL_FILES:
-        importlib.import_module(f"solver_service.numerics.{name}")
+def import_kernels() -> None:
+    """Let every kernel file, that is every module named `..._kernels`, register its kernels."""
+    for file in sorted(Path(__file__).parent.glob("*_kernels.py")):
+        importlib.import_module(f"solver_service.numerics.{file.stem}")
 
 
 def warm_kernels(device: str = "auto", *, with_oracle: bool = False) -> float:
@@ -100,7 +86,7 @@ def warm_kernels(device: str = "auto", *, with_oracle: bool = False) -> float:
     Raises:
         DeviceError: when the device is not there or its kernels do not compile.
     """
-    _import_kernels()
+    import_kernels()
     name = pick_device(device)
     began = time.perf_counter()
     modules = [SUPPORT_MODULE, ROWS_MODULE] if name == "cpu" else [SUPPORT_MODULE, STEP_MODULE]
@@ -119,7 +105,7 @@ def load_structure_kernels(device: str) -> None:
     Raises:
         DeviceError: when the kernels do not compile.
     """
-    _import_kernels()
+    import_kernels()
     _load([STRUCTURE_MODULE], device)
 
 
@@ -155,7 +141,7 @@ def compile_for_cuda(architecture: int, folder: Path) -> list[Path]:
     Returns:
         The cubin files.
     """
-    _import_kernels()
+    import_kernels()
     for module in (SUPPORT_MODULE, STEP_MODULE, STRUCTURE_MODULE):
         wp.compile_aot_module(module, arch=architecture, module_dir=folder, use_ptx=False)
     return sorted(folder.glob("*.cubin"))

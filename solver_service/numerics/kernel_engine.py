@@ -26,20 +26,36 @@ from solver_service.numerics.clock_kernels import (
     decide_to_go_on,
 )
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
+from solver_service.numerics.fields import Fields
 from solver_service.numerics.gauges import DRAIN_STEPS
 from solver_service.numerics.ghost_kernels import ghost_cells
-from solver_service.numerics.step_kernels import step_active_tiles
+from solver_service.numerics.step_kernels import keep_class_arrivals, step_active_tiles
+from solver_service.numerics.tile_list_kernels import decide_and_begin_list
+from solver_service.numerics.tile_step_kernels import (
+    BLOCKS_PER_MULTIPROCESSOR,
+    HOST_MEMORY,
+    LANES,
+    step_listed_tiles,
+)
 
-WAVE_SLOTS = 256
+WAVE_SLOTS = 16
+"""Places of the largest wave speed: few, since one thread reads them all before every step."""
+
 CUDA_THREADS = 1 << 18
 CPU_THREADS = 1
 
 
 class KernelEngine(Engine):
-    """See the module; state is always in buffer 0 between calls."""
+    """See the module; state is always in buffer 0 between calls.
 
-    def __init__(self, parts: StepParts) -> None:
+    Args:
+        parts: what a step works on.
+        by_tiles: whether thread blocks step whole tiles; else each thread steps single cells.
+    """
+
+    def __init__(self, parts: StepParts, by_tiles: bool) -> None:
         super().__init__(parts)
+        self._by_tiles = by_tiles
         store = parts.store
         device = store.device
         self._device = device
@@ -50,6 +66,9 @@ class KernelEngine(Engine):
         self._wave_slots = wp.zeros(WAVE_SLOTS, dtype=wp.float32, device=device)
         self._ghosts = wp.array(ghost_cells(store.nrows, store.ncols), dtype=wp.int32, device=device)
         self._threads = CUDA_THREADS if self._is_cuda else CPU_THREADS
+        self._lanes = LANES if self._is_cuda else 1
+        self._blocks = max(1, BLOCKS_PER_MULTIPROCESSOR * wp.get_device(device).sm_count)
+        self._host_memory = wp.zeros(0 if self._is_cuda else HOST_MEMORY, dtype=wp.float32, device=device)
         self._graph: wp.Graph | None = None
 
     def advance(self, target: float, should_stop: StopQuestion | None) -> bool:
@@ -98,16 +117,23 @@ class KernelEngine(Engine):
         self.step_count += int(self._counts.numpy()[int(COUNT_STEPS)]) - before
 
     def _decide(self) -> None:
+        tiles = self.parts.tiles
         wp.launch(
-            decide_to_go_on,
+            decide_and_begin_list if self._by_tiles else decide_to_go_on,
             dim=1,
             inputs=[self._clock, self._counts],
-            outputs=[self._go_on],
+            outputs=[self._go_on]
+            + ([tiles.is_first, tiles.count, tiles.rest_wave] if self._by_tiles else []),
             device=self._device,
+            block_dim=self._lanes,
         )
 
     def _take_steps(self) -> None:
-        self.parts.tiles.refresh(self.parts.store.fields[0])
+        fields = self.parts.store.fields[0]
+        if self._by_tiles:
+            self.parts.tiles.refresh_by_blocks(fields, self._blocks, self._lanes, self._host_memory)
+        else:
+            self.parts.tiles.refresh(fields)
         for k in range(REFRESH_STEPS):
             self._take_step(k % 2)
         self._decide()
@@ -124,21 +150,31 @@ class KernelEngine(Engine):
             device=device,
         )
         parts.edges.fill(self._clock, fields, self._ghosts, self._wave_slots)
-        wp.launch(
-            step_active_tiles,
-            dim=self._threads,
-            inputs=[
-                fields,
-                parts.scheme,
-                self._clock,
-                parts.tiles.tiles,
-                parts.tiles.count,
-                parts.tiles.cols,
-                self._threads,
-            ],
-            outputs=[self._wave_slots],
-            device=device,
-        )
+        self._step_tiles(fields)
         for part in parts.after_step:
             part.apply(self._clock, fields)
         parts.gauges.record(self._clock, fields)
+
+    def _step_tiles(self, fields: Fields) -> None:
+        parts, tiles = self.parts, self.parts.tiles
+        inputs = [fields, parts.scheme, self._clock, tiles.tiles, tiles.count, tiles.cols]
+        if self._by_tiles:
+            wp.launch(
+                step_listed_tiles,
+                dim=self._blocks * self._lanes,
+                inputs=[*inputs, self._blocks, self._host_memory],
+                outputs=[self._wave_slots],
+                device=self._device,
+                block_dim=self._lanes,
+            )
+        else:
+            wp.launch(
+                step_active_tiles,
+                dim=self._threads,
+                inputs=[*inputs, self._threads],
+                outputs=[self._wave_slots],
+                device=self._device,
+            )
+        if parts.store.arrival_depths:
+            inputs = [*inputs, self._threads]
+            wp.launch(keep_class_arrivals, dim=self._threads, inputs=inputs, device=self._device)

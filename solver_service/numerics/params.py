@@ -44,8 +44,9 @@ class SolverParams:
     """(column, row) of each gauge in cells from the centre of cell (0, 0); the nearest cell is recorded."""
     gauge_interval: float = 1.0
     """Time between gauge records [s]."""
-    engine: Literal["auto", "rows", "kernels"] = "auto"
-    """`rows` is the SIMD engine of CPUs, `kernels` the scalar and CUDA one; both give the same bits."""
+    engine: Literal["auto", "rows", "tiles", "kernels"] = "auto"
+    """`rows` is the SIMD engine of CPUs, `tiles` that of GPUs, `kernels` steps cell by cell on either; all
+    give the same bits."""
 
     def __post_init__(self) -> None:
         self._check("cfl", 0.0 < self.cfl <= 0.5, "0 < cfl <= 0.5")
@@ -62,7 +63,8 @@ class SolverParams:
         self._check("dt_max", self.dt_max > self.dt_min, "a time in s larger than dt_min")
         self._check("threads", self.threads is None or self.threads >= 1, "None or at least 1")
         self._check("gauge_interval", 0.0 < self.gauge_interval < math.inf, "a positive time in s")
-        self._check("engine", self.engine in ("auto", "rows", "kernels"), '"auto", "rows" or "kernels"')
+        engines = ("auto", "rows", "tiles", "kernels")
+        self._check("engine", self.engine in engines, '"auto", "rows", "tiles" or "kernels"')
 
     def _check(self, name: str, holds: bool, allowed: str) -> None:
         if not holds:

@@ -114,10 +114,11 @@ class ShallowWaterSolver:
             dt_max=self._dt_max,
             dt_min=params.dt_min,
         )
-        if self.device == "cpu" and params.engine != "kernels" and rows_compile():
+        if self.device == "cpu" and params.engine in ("auto", "rows") and rows_compile():
             return RowEngine(parts, thread_count(params.threads))
         warm_kernels(self.device, with_oracle=True)
-        return KernelEngine(parts)
+        by_tiles = params.engine == "tiles" or (self.device != "cpu" and params.engine == "auto")
+        return KernelEngine(parts, by_tiles)
 
     # --- water ---------------------------------------------------------------------------------
 

@@ -74,19 +74,52 @@ def flux_y(l: prediction, r: prediction, z_step: float, dt_dx: float, contact: f
 
 
 @wp.func
+def keep_state(
+    f: Fields, i: int, j: int, q: wp.vec4, h_before: float, dt: float, time: float, depth_arrival: float
+) -> float:
+    """Store depth, velocities and speed `q` of padded cell (i, j), widen its maxima; returns its wave."""
+    h_max = f.h_max[i, j]
+    h_max_time = f.h_max_time[i, j]
+    speed_max = f.speed_max[i, j]
+    discharge_max = f.discharge_max[i, j]
+    hazard_max = f.hazard_max[i, j]
+    arrival = f.arrival[i, j]
+    wet_since = f.wet_since[i, j]
+    rise_rate_max = f.rise_rate_max[i, j]
+    m = widen_maxima(
+        q[0], q[1], q[2], q[3], h_before, dt, time, depth_arrival,
+        h_max, h_max_time, speed_max, discharge_max, hazard_max, arrival, wet_since, rise_rate_max,
+    )  # fmt: skip
+    f.h_out[i, j] = q[0]
+    f.u_out[i, j] = q[1]
+    f.v_out[i, j] = q[2]
+    # Most steps widen few maxima: what is not written costs no memory traffic.
+    if m[0] != h_max:
+        f.h_max[i, j] = m[0]
+    if m[1] != h_max_time:
+        f.h_max_time[i, j] = m[1]
+    if m[2] != speed_max:
+        f.speed_max[i, j] = m[2]
+    if m[3] != discharge_max:
+        f.discharge_max[i, j] = m[3]
+    if m[4] != hazard_max:
+        f.hazard_max[i, j] = m[4]
+    if m[5] != arrival:
+        f.arrival[i, j] = m[5]
+    if m[7] != wet_since:
+        f.wet_since[i, j] = m[7]
+    if m[8] != rise_rate_max:
+        f.rise_rate_max[i, j] = m[8]
+    return m[6]
+
+
+@wp.func
 def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> float:
     """Advance padded cell (i, j); returns its wave speed [m/s]."""
     h = f.h[i, j]
     u = f.u[i, j]
     v = f.v[i, j]
     z = f.z[i, j]
-    deepest = wp.max(wp.max(h, f.h[i, j - 1]), wp.max(f.h[i, j + 1], wp.max(f.h[i - 1, j], f.h[i + 1, j])))
-    if deepest <= s.depth_film:
-        f.h_out[i, j] = h
-        f.u_out[i, j] = u
-        f.v_out[i, j] = v
-        return 0.0
-
     half_dt = 0.5 * dt
     r = dt / s.dx
     c = predict_at(f, s, i, j, half_dt)
@@ -100,26 +133,6 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> f
         n[0], n[1], n[3], b[0], b[2], b[3],
         f.drag[i, j], dt, s.dx, s.depth_dry,
     )  # fmt: skip
-    m = widen_maxima(
-        q[0], q[1], q[2], q[3], h, dt, time, s.depth_arrival,
-        f.h_max[i, j], f.h_max_time[i, j], f.speed_max[i, j],
-        f.discharge_max[i, j], f.hazard_max[i, j], f.arrival[i, j],
-        f.wet_since[i, j], f.rise_rate_max[i, j],
-    )  # fmt: skip
-    f.h_out[i, j] = q[0]
-    f.u_out[i, j] = q[1]
-    f.v_out[i, j] = q[2]
-    f.h_max[i, j] = m[0]
-    f.h_max_time[i, j] = m[1]
-    f.speed_max[i, j] = m[2]
-    f.discharge_max[i, j] = m[3]
-    f.hazard_max[i, j] = m[4]
-    f.arrival[i, j] = m[5]
-    f.wet_since[i, j] = m[7]
-    f.rise_rate_max[i, j] = m[8]
-    for k in range(f.class_depths.shape[0]):
-        f.class_arrival[k, i, j] = arrival_time(q[0], f.class_depths[k], time, f.class_arrival[k, i, j])
-
     if j == 2:
         f.edge_flow[0, i - 2] = f.edge_flow[0, i - 2] - wp.float64(w[0])
     if j == s.ncols + 1:
@@ -128,7 +141,7 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> f
         f.edge_flow[2, j - 2] = f.edge_flow[2, j - 2] - wp.float64(b[0])
     if i == s.nrows + 1:
         f.edge_flow[3, j - 2] = f.edge_flow[3, j - 2] + wp.float64(n[0])
-    return m[6]
+    return keep_state(f, i, j, q, h, dt, time, s.depth_arrival)
 
 
 @wp.kernel(module=STEP_MODULE)
@@ -176,3 +189,35 @@ def step_active_tiles(
         k += stride
     if wave > 0.0:
         wp.atomic_max(wave_slots, thread % wave_slots.shape[0], wave)
+
+
+@wp.kernel(module=STEP_MODULE)
+def keep_class_arrivals(
+    f: Fields,
+    s: Scheme,
+    clock: wp.array(dtype=wp.float64),
+    tiles: wp.array(dtype=wp.int32),
+    tile_count: wp.array(dtype=wp.int32),
+    tile_cols: int,
+    stride: int,
+):
+    """Widen the arrival times by depth class of the cells that the step has just advanced.
+
+    Arguments are those of `step_active_tiles`.
+    """
+    time = wp.float32(clock[CLOCK_TIME])
+    work = tile_count[0] * TILE_CELLS
+    if clock[CLOCK_DT] <= wp.float64(0.0):
+        work = 0
+    k = int(wp.tid())
+    while k < work:
+        tile = tiles[k // TILE_CELLS]
+        cell = k % TILE_CELLS
+        row = (tile // tile_cols) * TILE_SIDE + cell // TILE_SIDE
+        col = (tile % tile_cols) * TILE_SIDE + cell % TILE_SIDE
+        if row < s.nrows and col < s.ncols:
+            h = f.h_out[row + 2, col + 2]
+            for n in range(f.class_depths.shape[0]):
+                arrival = f.class_arrival[n, row + 2, col + 2]
+                f.class_arrival[n, row + 2, col + 2] = arrival_time(h, f.class_depths[n], time, arrival)
+        k += stride

@@ -108,6 +108,23 @@ def quadrants_at(
     return found
 
 
+@wp.func
+def quadrants_near(
+    quadrants: wp.array(dtype=wp.int32), r: int, c: int, tile_rows: int, tile_cols: int
+) -> int:
+    """Bits of the lively quadrants that a tile holds or touches; 0 where it may sleep."""
+    near = quadrants_at(quadrants, r, c, tile_rows, tile_cols)
+    near = near | (quadrants_at(quadrants, r, c - 1, tile_rows, tile_cols) & 10)
+    near = near | (quadrants_at(quadrants, r, c + 1, tile_rows, tile_cols) & 5)
+    near = near | (quadrants_at(quadrants, r - 1, c, tile_rows, tile_cols) & 12)
+    near = near | (quadrants_at(quadrants, r + 1, c, tile_rows, tile_cols) & 3)
+    near = near | (quadrants_at(quadrants, r - 1, c - 1, tile_rows, tile_cols) & 8)
+    near = near | (quadrants_at(quadrants, r - 1, c + 1, tile_rows, tile_cols) & 4)
+    near = near | (quadrants_at(quadrants, r + 1, c - 1, tile_rows, tile_cols) & 2)
+    near = near | (quadrants_at(quadrants, r + 1, c + 1, tile_rows, tile_cols) & 1)
+    return near
+
+
 @wp.kernel(module=SUPPORT_MODULE)
 def list_active_tiles(
     h: wp.array2d(dtype=wp.float32),
@@ -136,15 +153,7 @@ def list_active_tiles(
     tile = wp.tid()
     r = tile // tile_cols
     c = tile % tile_cols
-    near = quadrants[tile]
-    near = near | (quadrants_at(quadrants, r, c - 1, tile_rows, tile_cols) & 10)
-    near = near | (quadrants_at(quadrants, r, c + 1, tile_rows, tile_cols) & 5)
-    near = near | (quadrants_at(quadrants, r - 1, c, tile_rows, tile_cols) & 12)
-    near = near | (quadrants_at(quadrants, r + 1, c, tile_rows, tile_cols) & 3)
-    near = near | (quadrants_at(quadrants, r - 1, c - 1, tile_rows, tile_cols) & 8)
-    near = near | (quadrants_at(quadrants, r - 1, c + 1, tile_rows, tile_cols) & 4)
-    near = near | (quadrants_at(quadrants, r + 1, c - 1, tile_rows, tile_cols) & 2)
-    near = near | (quadrants_at(quadrants, r + 1, c + 1, tile_rows, tile_cols) & 1)
+    near = quadrants_near(quadrants, r, c, tile_rows, tile_cols)
     was_active = active[tile]
     if is_first[1] == 1:
         tile_wave[tile] = 0.0
@@ -159,7 +168,9 @@ def list_active_tiles(
                     h_out[i, j] = h[i, j]
                     u_out[i, j] = u[i, j]
                     v_out[i, j] = v[i, j]
-        tile_wave[tile] = wave
+        # In the first list a film counts for nothing, asleep or not: nothing may depend on the past.
+        if is_first[1] == 0 or quadrants[tile] != 0:
+            tile_wave[tile] = wave
     if near == 0:
         wp.atomic_max(rest_wave, 0, tile_wave[tile])
     elif is_first[1] == 1 or was_active == 0:
