@@ -74,46 +74,6 @@ def flux_y(l: prediction, r: prediction, z_step: float, dt_dx: float, contact: f
 
 
 @wp.func
-def keep_state(
-    f: Fields, i: int, j: int, q: wp.vec4, h_before: float, dt: float, time: float, depth_arrival: float
-) -> float:
-    """Store depth, velocities and speed `q` of padded cell (i, j), widen its maxima; returns its wave."""
-    h_max = f.h_max[i, j]
-    h_max_time = f.h_max_time[i, j]
-    speed_max = f.speed_max[i, j]
-    discharge_max = f.discharge_max[i, j]
-    hazard_max = f.hazard_max[i, j]
-    arrival = f.arrival[i, j]
-    wet_since = f.wet_since[i, j]
-    rise_rate_max = f.rise_rate_max[i, j]
-    m = widen_maxima(
-        q[0], q[1], q[2], q[3], h_before, dt, time, depth_arrival,
-        h_max, h_max_time, speed_max, discharge_max, hazard_max, arrival, wet_since, rise_rate_max,
-    )  # fmt: skip
-    f.h_out[i, j] = q[0]
-    f.u_out[i, j] = q[1]
-    f.v_out[i, j] = q[2]
-    # Most steps widen few maxima: what is not written costs no memory traffic.
-    if m[0] != h_max:
-        f.h_max[i, j] = m[0]
-    if m[1] != h_max_time:
-        f.h_max_time[i, j] = m[1]
-    if m[2] != speed_max:
-        f.speed_max[i, j] = m[2]
-    if m[3] != discharge_max:
-        f.discharge_max[i, j] = m[3]
-    if m[4] != hazard_max:
-        f.hazard_max[i, j] = m[4]
-    if m[5] != arrival:
-        f.arrival[i, j] = m[5]
-    if m[7] != wet_since:
-        f.wet_since[i, j] = m[7]
-    if m[8] != rise_rate_max:
-        f.rise_rate_max[i, j] = m[8]
-    return m[6]
-
-
-@wp.func
 def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> float:
     """Advance padded cell (i, j); returns its wave speed [m/s]."""
     h = f.h[i, j]
@@ -141,7 +101,24 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> f
         f.edge_flow[2, j - 2] = f.edge_flow[2, j - 2] - wp.float64(b[0])
     if i == s.nrows + 1:
         f.edge_flow[3, j - 2] = f.edge_flow[3, j - 2] + wp.float64(n[0])
-    return keep_state(f, i, j, q, h, dt, time, s.depth_arrival)
+    m = widen_maxima(
+        q[0], q[1], q[2], q[3], h, dt, time, s.depth_arrival,
+        f.h_max[i, j], f.h_max_time[i, j], f.speed_max[i, j],
+        f.discharge_max[i, j], f.hazard_max[i, j], f.arrival[i, j],
+        f.wet_since[i, j], f.rise_rate_max[i, j],
+    )  # fmt: skip
+    f.h_out[i, j] = q[0]
+    f.u_out[i, j] = q[1]
+    f.v_out[i, j] = q[2]
+    f.h_max[i, j] = m[0]
+    f.h_max_time[i, j] = m[1]
+    f.speed_max[i, j] = m[2]
+    f.discharge_max[i, j] = m[3]
+    f.hazard_max[i, j] = m[4]
+    f.arrival[i, j] = m[5]
+    f.wet_since[i, j] = m[7]
+    f.rise_rate_max[i, j] = m[8]
+    return m[6]
 
 
 @wp.kernel(module=STEP_MODULE)

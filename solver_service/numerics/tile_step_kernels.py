@@ -4,7 +4,7 @@ Every value is computed once and handed over in shared memory:
 
     load      h u v z drag of the tile with two cells around it, 16 bytes at a time
     predict   the cells of the tile with one cell around it
-    faces     the 17 x 16 faces along x and the 16 x 17 along y, each once
+    faces     the 17 x 16 faces along x, then the 16 x 17 along y, each once
     update    the cells of the tile, maxima, wave speed
 
 Each phase is a loop `for (k = lane; k < N; k += lanes)`, with a barrier between the phases, over the same
@@ -21,11 +21,11 @@ bit.
 import warp as wp
 
 from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_TIME
-from solver_service.numerics.conservative_update import update_cell
+from solver_service.numerics.conservative_update import update_cell, widen_maxima
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.reconstruction import predict
 from solver_service.numerics.riemann import face_flux
-from solver_service.numerics.step_kernels import keep_state, step_cell
+from solver_service.numerics.step_kernels import step_cell
 from solver_service.numerics.warp_modules import STEP_MODULE
 
 LANES = 256
@@ -74,7 +74,8 @@ STEP_SOURCE = (
     float* const Z = shared + 1200;
     float* const D = shared + 1600;
     float* const P = shared + 2000;
-    float* const F = shared + 2000 + 13 * 324;
+    float* const X = shared + 2000 + 13 * 324;
+    float* const Y = X + 4 * 272;
     for (int k = lane; k < WORDS; k += lanes) words[k] = 0;
     WP_TILE_SYNC();
 
@@ -122,26 +123,30 @@ STEP_SOURCE = (
         }
     WP_TILE_SYNC();
 
-    // faces: 17 in each of 16 rows along x, then 16 in each of 17 rows along y
+    // faces along x: the western one of each cell, then the eastern edge of the tile; along y alike
     const float dt_dx = dt / s.dx;
-    if (wet)
-        for (int k = lane; k < 544; k += lanes) {
-            const bool along_y = k >= 272;
-            const int n = along_y ? k - 272 : k;
-            const int r = along_y ? n / 16 : n / 17 + 1;
-            const int c = along_y ? n % 16 + 1 : n % 17;
-            const float* const L = P + 18 * r + c;
-            const float* const R = L + (along_y ? 18 : 1);
-            const int o = 20 * (r + 1) + (c + 1);
-            const int normal = along_y ? 648 : 324, tangential = along_y ? 324 : 648;
-            const int slope = along_y ? 7 * 324 : 3 * 324;
-            auto q = FACE(L[0], L[slope], L[normal], L[slope + normal], L[tangential], L[slope + tangential],
-                L[slope + 972], L[11 * 324], L[12 * 324],
-                R[0], R[slope], R[normal], R[slope + normal], R[tangential], R[slope + tangential],
-                R[slope + 972], R[11 * 324], R[12 * 324],
-                Z[o + (along_y ? 20 : 1)] - Z[o], dt_dx, s.contact);
-            UNROLL for (int m = 0; m < 4; ++m) F[544 * m + k] = q[m];
+    if (wet) {
+        NO_UNROLL for (int k = lane; k < 272; k += lanes) {
+            const int r = k < 256 ? k / 16 : k - 256, c = k < 256 ? k % 16 : 16;
+            const float* const L = P + 18 * (r + 1) + c;
+            const float* const R = L + 1;
+            const int o = 20 * (r + 2) + (c + 1);
+            auto q = FACE(L[0], L[3*324], L[1*324], L[4*324], L[2*324], L[5*324], L[6*324], L[11*324], L[12*324],
+                R[0], R[3*324], R[1*324], R[4*324], R[2*324], R[5*324], R[6*324], R[11*324], R[12*324],
+                Z[o + 1] - Z[o], dt_dx, s.contact);
+            UNROLL for (int m = 0; m < 4; ++m) X[272 * m + k] = q[m];
         }
+        NO_UNROLL for (int k = lane; k < 272; k += lanes) {
+            const int r = k / 16, c = k % 16;
+            const float* const L = P + 18 * r + (c + 1);
+            const float* const R = L + 18;
+            const int o = 20 * (r + 1) + (c + 2);
+            auto q = FACE(L[0], L[7*324], L[2*324], L[9*324], L[1*324], L[8*324], L[10*324], L[11*324], L[12*324],
+                R[0], R[7*324], R[2*324], R[9*324], R[1*324], R[8*324], R[10*324], R[11*324], R[12*324],
+                Z[o + 20] - Z[o], dt_dx, s.contact);
+            UNROLL for (int m = 0; m < 4; ++m) Y[272 * m + k] = q[m];
+        }
+    }
     WP_TILE_SYNC();
 
     // update
@@ -154,13 +159,13 @@ STEP_SOURCE = (
         wp::vec_t<4, float> q(H[o], U[o], V[o], 0.0f);
         if (wet) {
             const float* const C = P + 18 * (r + 1) + (c + 1);
-            const float* const W = F + 17 * r + c;
-            const float* const E = W + 1;
-            const float* const S = F + 272 + 16 * r + c;
+            const float* const W = X + k;
+            const float* const E = c < 15 ? W + 1 : X + 256 + r;
+            const float* const S = Y + k;
             const float* const N = S + 16;
             q = UPDATE(H[o], U[o], V[o], C[0], C[3*324] + C[6*324], C[7*324] + C[10*324],
-                E[0], E[544], E[3*544], W[0], W[2*544], W[3*544],
-                N[0], N[544], N[3*544], S[0], S[2*544], S[3*544], D[o], dt, s.dx, s.depth_dry);
+                E[0], E[272], E[3*272], W[0], W[2*272], W[3*272],
+                N[0], N[272], N[3*272], S[0], S[2*272], S[3*272], D[o], dt, s.dx, s.depth_dry);
             double* const edge = (double*)f.edge_flow.data;
             const int edge_pitch = f.edge_flow.shape[1];
             if (col == 0) edge[row] -= (double)W[0];
@@ -168,7 +173,23 @@ STEP_SOURCE = (
             if (row == 0) edge[2 * edge_pitch + col] -= (double)S[0];
             if (row == s.nrows - 1) edge[3 * edge_pitch + col] += (double)N[0];
         }
-        const float wave = KEEP(f, row + 2, col + 2, q, H[o], dt, time, s.depth_arrival);
+        const size_t at = (size_t)(row + 2) * pitch + (col + 2);
+        ((float*)f.h_out.data)[at] = q[0];
+        ((float*)f.u_out.data)[at] = q[1];
+        ((float*)f.v_out.data)[at] = q[2];
+        float* const kept[] = {(float*)f.h_max.data, (float*)f.h_max_time.data, (float*)f.speed_max.data,
+            (float*)f.discharge_max.data, (float*)f.hazard_max.data, (float*)f.arrival.data,
+            (float*)f.wet_since.data, (float*)f.rise_rate_max.data};
+        float old[8];
+        UNROLL for (int m = 0; m < 8; ++m) old[m] = kept[m][at];
+        auto w = WIDEN(q[0], q[1], q[2], q[3], H[o], dt, time, s.depth_arrival,
+            old[0], old[1], old[2], old[3], old[4], old[5], old[6], old[7]);
+        // Most steps widen few maxima: what is not written costs no memory traffic.
+        UNROLL for (int m = 0; m < 8; ++m) {
+            const float widened = w[m < 6 ? m : m + 1];
+            if (widened != old[m]) kept[m][at] = widened;
+        }
+        const float wave = w[6];
         // Waves are not negative: their bits are ordered as they are.
         const int bits = *(const int*)&wave;
         highest = highest < bits ? bits : highest;
@@ -214,11 +235,11 @@ _COPY = r"""
 
 def with_names(snippet: str) -> str:
     """Native source with the names that Warp gave to the functions it generates."""
-    names = {"PREDICT": predict, "FACE": face_flux, "UPDATE": update_cell, "KEEP": keep_state}
+    names = {"PREDICT": predict, "FACE": face_flux, "UPDATE": update_cell, "WIDEN": widen_maxima}
     for word, function in names.items():
         snippet = snippet.replace(word + "(", function.native_func + "(")
     return (
-        snippet.replace("UNROLL", '_Pragma("unroll")')
+        snippet.replace("NO_UNROLL", '_Pragma("unroll 1")').replace("UNROLL", '_Pragma("unroll")')
         .replace("FLOATS", str(SHARED_FLOATS))
         .replace("WORDS", str(SHARED_WORDS))
     )
