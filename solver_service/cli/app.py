@@ -54,11 +54,18 @@ def run(
 
 
 @app.command()
-def check(case: CaseArgument, device: DeviceOption = "auto", json_line: JsonOption = False) -> None:
-    """Look at a case: coordinates, units, holes, pits, inflows, memory and time."""
+def check(
+    case: CaseArgument,
+    device: DeviceOption = "auto",
+    json_line: JsonOption = False,
+    geojson: Annotated[
+        Path | None, typer.Option("--geojson", help="File for the cells and faces of what is built.")
+    ] = None,
+) -> None:
+    """Look at a case: coordinates, units, holes, pits, inflows, structures, memory and time."""
     from solver_service.cli.check import check_and_tell
 
-    check_and_tell(case, device, json_line)
+    check_and_tell(case, device, json_line, geojson)
 
 
 @app.command("cases")

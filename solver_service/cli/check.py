@@ -4,21 +4,30 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
 
 import msgspec
 
 from solver_service.errors import ServiceError
-from solver_service.offline import check_case
+from solver_service.offline import check_case, write_geojson
 from solver_service.scenario import case_summary, list_cases, load_case
 
 
-def check_and_tell(name: str, device: str, json_line: bool) -> None:
+def check_and_tell(name: str, device: str, json_line: bool, geojson: Path | None = None) -> None:
     """Check a case and print what was found.
+
+    Args:
+        name: name or path of the case.
+        device: where it would run.
+        json_line: end with a JSON object instead of a table.
+        geojson: file for the cells and faces of everything on the grid; None writes none.
 
     Raises:
         ServiceError: the case cannot be loaded, or the device is absent.
     """
     case = load_case(name)
+    if geojson is not None:
+        write_geojson(geojson, case)
     report = check_case(case, device)
     if json_line:
         print(json.dumps({"case": case.name, **report.figures, "warnings": report.warnings}), flush=True)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver_service.numerics import ShallowWaterSolver, pick_device
+from solver_service.offline.case_features import case_features
 from solver_service.scenario import Case
 
 PROBE_S = 2.0
@@ -42,7 +43,7 @@ def check_case(case: Case, device: str = "auto") -> CaseReport:
     Raises:
         ServiceError: the device is absent, or the run blows up at once.
     """
-    report = CaseReport()
+    report = CaseReport(warnings=list(case.warnings))
     _look_at_ground(case, report)
     _look_at_water(case, report)
     _try_solver(case, pick_device(device), report)
@@ -90,29 +91,50 @@ def _pits(z: NDArray[np.float64], blocked: NDArray[np.bool_]) -> tuple[int, floa
 
 
 def _look_at_water(case: Case, report: CaseReport) -> None:
-    area = case.grid.dx**2
+    area, model = case.grid.dx**2, case.model
     volume = float(case.initial_h.sum(dtype=np.float64)) * area
-    edges = sorted({boundary.edge for boundary in case.model.boundaries if boundary.kind == "open"})
+    open_edges = [boundary for boundary in model.boundaries if boundary.kind != "wall"]
     report.facts += [
         ("water at the start", f"{volume:.6g} m3, up to {float(case.initial_h.max()):.2f} m deep"),
-        ("inflows", f"{len(case.model.sources)}" + (", rain" if case.model.rain is not None else "")),
-        ("open edges", ", ".join(edges) or "none (walls all around)"),
-        ("gauges, sections", f"{len(case.gauges)}, {len(case.sections)}"),
-        ("run", f"{case.duration:g} s, a frame every {case.output_interval:g} s"),
+        ("rain", _rain(case)),
+        ("infiltration", "none" if model.infiltration is None else model.infiltration.kind),
     ]
+    report.facts += [(feature.kind, f"{feature.id}: {feature.text}") for feature in case_features(case)]
+    if not open_edges:
+        report.facts.append(("boundary", "none (walls all around)"))
+    report.facts.append(("run", f"{case.duration:g} s, a frame every {case.output_interval:g} s"))
     report.figures["volume_initial_m3"] = volume
-    if volume == 0.0 and not case.model.sources and case.model.rain is None:
-        report.warnings.append("There is no water: no [initial], no [[source]] and no [rain].")
-    for number, source in enumerate(case.model.sources, start=1):
+    brings = any(boundary.kind in ("stage", "discharge") for boundary in model.boundaries)
+    if volume == 0.0 and not model.sources and model.rain is None and not brings:
+        report.warnings.append(
+            "There is no water: no [initial], no [[source]], no [rain] and no edge that brings some."
+        )
+    for number, source in enumerate(model.sources, start=1):
         on_edge = (source.rows == 0) | (source.rows == case.grid.nrows - 1)
         on_edge |= (source.cols == 0) | (source.cols == case.grid.ncols - 1)
         if on_edge.any():
             report.warnings.append(f"[[source]] number {number} touches the edge of the terrain.")
-    if case.model.blocked is not None:
+    if model.blocked is not None:
         for gauge in case.gauges:
             row, col = (round(part) for part in case.grid.to_cell(gauge.x, gauge.y))
-            if case.model.blocked[min(row, case.grid.nrows - 1), min(col, case.grid.ncols - 1)]:
+            if model.blocked[min(row, case.grid.nrows - 1), min(col, case.grid.ncols - 1)]:
                 report.warnings.append(f"Gauge '{gauge.id}' stands on a cell without data.")
+
+
+def _rain(case: Case) -> str:
+    """Largest rate, and the mean depth that falls until the end of the run."""
+    rain = case.model.rain
+    if rain is None:
+        return "none"
+    rows, cols = np.bincount(rain.row_index), np.bincount(rain.col_index)
+    mean = rows @ rain.rates[:, : rows.size, : cols.size] @ cols / case.grid.cell_count
+    times = np.unique(np.append(np.clip(rain.times, 0.0, case.duration), case.duration))
+    if rain.interpolation == "step":
+        depth = float(mean[np.searchsorted(rain.times, times[:-1], side="right") - 1] @ np.diff(times))
+    else:
+        depth = float(np.trapezoid(np.interp(times, rain.times, mean), times))
+    cells = f"{rain.rates.shape[1]} x {rain.rates.shape[2]} rain cells"
+    return f"up to {rain.rates.max() * 3.6e6:.4g} mm/h, {depth * 1e3:.4g} mm in all, {cells}"
 
 
 def _try_solver(case: Case, device: str, report: CaseReport) -> None:

@@ -44,3 +44,13 @@ def test_cases_are_listed_and_a_broken_one_does_not_hide_the_others(
     assert "case.toml: [case] name is missing" in answer.err or "the table [run] is missing" in answer.err
     names = [case["name"] for case in json.loads(fev_solver("cases", "--json").out)]
     assert names == ["jacksboro", "malpasset"]
+
+
+def test_the_cells_of_what_is_built_go_into_a_map_file(tmp_path: Path, fev_solver) -> None:
+    write_case(tmp_path, CASE + GAUGES)
+
+    answer = fev_solver("check", tmp_path, "--device", "cpu", "--geojson", tmp_path / "built.geojson")
+
+    assert answer.code == 0
+    features = json.loads((tmp_path / "built.geojson").read_text())["features"]
+    assert [feature["properties"]["id"] for feature in features][:2] == ["east-1", "upper"]

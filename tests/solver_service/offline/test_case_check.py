@@ -18,8 +18,8 @@ def test_a_sound_case_has_facts_and_no_warnings(tmp_path: Path) -> None:
     assert report.warnings == []
     assert facts["coordinates"] == "local, metres"
     assert facts["cells"] == "24 x 40 = 960 of 10 m"
-    assert facts["open edges"] == "east"
-    assert facts["gauges, sections"] == "2, 1"
+    assert facts["boundary"] == "east-1: open in the east, cells 0 to 23"
+    assert facts["gauge"] == "lower: cell (row 12, column 15)"
     assert report.figures["cells"] == 960
     assert report.figures["volume_initial_m3"] == pytest.approx(case.initial_h.sum() * 100.0, rel=1e-6)
     assert 0.0 < report.figures["run_time_s"] < 600.0
@@ -54,3 +54,31 @@ def test_a_case_without_water_is_odd(tmp_path: Path) -> None:
 def test_an_absent_device_is_refused(tmp_path: Path) -> None:
     with pytest.raises(DeviceError, match="cuda:17"):
         check_case(load_case(write_case(tmp_path)), "cuda:17")
+
+
+STORM = "time_s,rain_mm_h\n-3600,50\n3600,100\n7200,0\n"
+
+
+@pytest.mark.parametrize(
+    ("keys", "depth"),
+    # Linear: from 75 to 100 mm/h in the first hour, then down to 50 in half an hour; the run lasts 5400 s.
+    [("", 87.5 + 37.5), ('interpolation = "step"\n', 50.0 + 50.0)],
+)
+def test_the_rain_of_the_whole_run_is_told_as_depth(tmp_path: Path, keys: str, depth: float) -> None:
+    text = CASE.replace("duration = 20.0", "duration = 5400.0") + f'\n[rain]\nseries = "r.csv"\n{keys}'
+    write_case(tmp_path, text)
+    (tmp_path / "r.csv").write_text(STORM)
+
+    facts = dict(check_case(load_case(tmp_path), "cpu").facts)
+
+    assert facts["rain"] == f"up to 100 mm/h, {depth:g} mm in all, 1 x 1 rain cells"
+
+
+def test_rain_that_begins_late_is_not_counted_before(tmp_path: Path) -> None:
+    write_case(tmp_path, CASE + '\n[rain]\nseries = "r.csv"\n')
+    (tmp_path / "r.csv").write_text("time_s,rain\n10,360\n20,360\n")
+
+    report = check_case(load_case(tmp_path), "cpu")
+
+    assert "1 mm in all" in dict(report.facts)["rain"]
+    assert any("r.csv: begins at 10 s" in warning for warning in report.warnings)
