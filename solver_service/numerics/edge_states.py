@@ -38,14 +38,23 @@ DISCHARGE_LEAST = wp.constant(1.0e-9)
 NEWTON_STEPS = wp.constant(10)
 """From the chosen beginnings Newton's method falls monotonically; float32 is reached in fewer."""
 
+PASSES = wp.constant(0.0)
+"""Water passes the edge, and waves come back from it."""
+
+ACTS_AS_WALL = wp.constant(1.0)
+"""The edge reflects."""
+
+FALLS_OFF = wp.constant(2.0)
+"""The water leaves at least as fast as waves."""
+
 edge_state = wp.types.vector(length=3, dtype=wp.float32)
-"""h_b, u_b outwards, and 1 where the edge is to act as a wall."""
+"""h_b, u_b outwards, and one of the words above."""
 
 
 @wp.func
 def wall_state() -> edge_state:
     """The edge reflects."""
-    return edge_state(0.0, 0.0, 1.0)
+    return edge_state(0.0, 0.0, ACTS_AS_WALL)
 
 
 @wp.func
@@ -54,7 +63,7 @@ def overfall(u: float, c: float) -> edge_state:
     critical = (u + 2.0 * c) / 3.0
     state = wall_state()
     if critical > 0.0:
-        state = edge_state(critical * critical / GRAVITY, critical, 0.0)
+        state = edge_state(critical * critical / GRAVITY, critical, FALLS_OFF)
     return state
 
 
@@ -62,8 +71,9 @@ def overfall(u: float, c: float) -> edge_state:
 def open_state(h: float, u: float, rest_h: float, rest_u: float) -> edge_state:
     """Waves leave into water of depth `rest_h` that leaves with `rest_u`; nothing enters."""
     c = wp.sqrt(GRAVITY * h)
-    state = edge_state(h, u, 0.0)
+    state = edge_state(h, u, FALLS_OFF)
     if u <= 0.0 or u < c:
+        state = edge_state(h, u, PASSES)
         rise = 2.0 * (wp.sqrt(GRAVITY * rest_h) - c)
         if wp.abs(rest_h - h) <= FACE_TOLERANCE * wp.max(h, rest_h):
             rise = 0.0
@@ -72,7 +82,7 @@ def open_state(h: float, u: float, rest_h: float, rest_u: float) -> edge_state:
         if u_b > c + dc:
             state = overfall(u, c)
         elif u_b > 0.0:
-            state = edge_state(h + dc * (2.0 * c + dc) / GRAVITY, u_b, 0.0)
+            state = edge_state(h + dc * (2.0 * c + dc) / GRAVITY, u_b, PASSES)
         elif u != 0.0 or dc != 0.0:
             state = wall_state()
     return state
@@ -85,7 +95,7 @@ def stage_state(h: float, u: float, level_depth: float) -> edge_state:
     h_b = level_depth
     if wp.abs(h_b - h) <= FACE_TOLERANCE * wp.max(h, h_b):
         h_b = h
-    state = edge_state(h, u, 0.0)
+    state = edge_state(h, u, FALLS_OFF)
     # A level above the sequent depth sends a jump against supercritical outflow.
     sequent = 0.5 * (wp.sqrt(h * h + 8.0 * h * u * u / GRAVITY) - h)
     if u <= 0.0 or u < c or h_b > sequent:
@@ -94,7 +104,7 @@ def stage_state(h: float, u: float, level_depth: float) -> edge_state:
         if h_b <= 0.0 or u_b > c_b:
             state = overfall(u, c)
         else:
-            state = edge_state(h_b, wp.max(u_b, -c_b), 0.0)
+            state = edge_state(h_b, wp.max(u_b, -c_b), PASSES)
     return state
 
 
@@ -120,12 +130,12 @@ def discharge_state(h: float, u: float, q: float) -> edge_state:
     state = wall_state()
     if q > DISCHARGE_LEAST:
         c_b = inflow_celerity(invariant, q)
-        state = edge_state(c_b * c_b / GRAVITY, -GRAVITY * q / (c_b * c_b), 0.0)
+        state = edge_state(c_b * c_b / GRAVITY, -GRAVITY * q / (c_b * c_b), PASSES)
     elif q < -DISCHARGE_LEAST and invariant > 0.0:
         critical = invariant / 3.0
         gq = -GRAVITY * q
         if u > 0.0 and u >= c:
-            state = edge_state(h, u, 0.0)
+            state = edge_state(h, u, FALLS_OFF)
         elif gq >= critical * critical * critical:
             state = overfall(u, c)
         else:
@@ -133,7 +143,7 @@ def discharge_state(h: float, u: float, q: float) -> edge_state:
             for _ in range(NEWTON_STEPS):
                 c_b = c_b - ((2.0 * c_b - invariant) * c_b * c_b + gq) / ((6.0 * c_b - 2.0 * invariant) * c_b)
             c_b = wp.max(c_b, critical)
-            state = edge_state(c_b * c_b / GRAVITY, gq / (c_b * c_b), 0.0)
+            state = edge_state(c_b * c_b / GRAVITY, gq / (c_b * c_b), PASSES)
     return state
 
 
@@ -144,7 +154,7 @@ def normal_depth_state(h: float, u: float, drag: float, slope: float) -> edge_st
     invariant = u + 2.0 * c
     state = wall_state()
     if u > 0.0 and u >= c:
-        state = edge_state(h, u, 0.0)
+        state = edge_state(h, u, FALLS_OFF)
     elif invariant > 0.0:
         # u_b = h_b^(2/3) sqrt(S) / n = k c_b^(4/3)
         k = wp.sqrt(GRAVITY * slope / wp.max(drag, 1.0e-12)) * wp.pow(GRAVITY, -2.0 / 3.0)
@@ -156,5 +166,5 @@ def normal_depth_state(h: float, u: float, drag: float, slope: float) -> edge_st
         if u_b > c_b:
             state = overfall(u, c)
         else:
-            state = edge_state(c_b * c_b / GRAVITY, u_b, 0.0)
+            state = edge_state(c_b * c_b / GRAVITY, u_b, PASSES)
     return state

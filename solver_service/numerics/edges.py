@@ -23,10 +23,13 @@ from solver_service.numerics.edge_kernels import (
 )
 from solver_service.numerics.fields import Fields, FieldStore, FloatRaster
 from solver_service.numerics.friction import GRAVITY
-from solver_service.numerics.ghost_kernels import fill_ghost_cells
+from solver_service.numerics.ghost_kernels import fill_ghost_cells, pad_bed
 from solver_service.numerics.model import FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.step_part import PartVolumes
+
+SLOPE_CONTINUED = 0.1
+"""Steepest bed at an edge that goes on behind it [1]; steeper is a step of the raster."""
 
 CHUNK = 32
 """Faces that one thread books."""
@@ -144,6 +147,16 @@ class Edges:
             setattr(segments, name, self._arrays[name])
         return segments
 
+    def pad_bed(self, z_b: FloatRaster) -> FloatRaster:
+        """Bed [m] with ghost cells."""
+        fall_max = np.full(self.segment.shape, SLOPE_CONTINUED * self._model.dx, np.float32)
+        rise_max = np.zeros_like(fall_max)
+        for b in self._boundaries:
+            if b.kind == "discharge":
+                faces = (EDGES.index(b.edge), slice(b.first, b.last))
+                rise_max[faces] = fall_max[faces]
+        return pad_bed(z_b, self.segment, fall_max, rise_max)
+
     def _walls_beside(self) -> list[tuple[int, int]]:
         """Edge and face of the walls next to a segment along the edge or round a corner."""
         nrows, ncols = self._model.shape
@@ -237,8 +250,9 @@ class Edges:
         if self._has_discharge:
             inputs = [fields.h, fields.z, fields.drag, self._depth_dry, *size, segments]
             launches.append((weigh_edge_cells, self.chunk_count, inputs, []))
-        inputs = [clock, ghosts, fields.z, fields.drag, self._model.dx, *size, segments]
-        launches.append((fill_ghost_cells, ghosts.shape[0], inputs, [fields.h, fields.u, fields.v, waves]))
+        inputs = [clock, ghosts, fields.z, self._model.dx, *size, segments]
+        outputs = [fields.drag, fields.h, fields.u, fields.v, waves]
+        launches.append((fill_ghost_cells, ghosts.shape[0], inputs, outputs))
         recorded = [
             wp.launch(kernel, dim, inputs, outputs, device=self._device, record_cmd=record)
             for kernel, dim, inputs, outputs in launches

@@ -1,12 +1,13 @@
 """Ghost cells: the water and the bed around the grid, filled before every step.
 
-A wall reflects depth, tangential velocity and bed, and turns the normal velocity round. At every other edge
-the bed goes on level, and both ghost cells hold the state at the edge (see `edge_states`).
+A wall reflects surface, tangential velocity and bed, and turns the normal velocity round. At every other
+edge both ghost cells hold the state at the edge (see `edge_states`). A bed that falls towards the edge goes
+on falling behind it, and one that rises towards a discharge goes on rising. Still water goes on level over
+that bed, water in balance with friction or that falls off keeps its depth, and in between the surface falls
+by the friction slope: a lake stays at rest, and uniform flow stays uniform.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
@@ -15,9 +16,11 @@ import warp as wp
 from solver_service.numerics.clock_kernels import CLOCK_DT
 from solver_service.numerics.edge_kernels import EdgeSegments, face_cell
 from solver_service.numerics.edge_states import (
+    ACTS_AS_WALL,
     EDGE_DISCHARGE,
     EDGE_OPEN,
     EDGE_STAGE,
+    PASSES,
     discharge_state,
     edge_state,
     normal_depth_state,
@@ -25,7 +28,7 @@ from solver_service.numerics.edge_states import (
     stage_state,
 )
 from solver_service.numerics.fields import GHOSTS, TILE, FloatRaster
-from solver_service.numerics.friction import GRAVITY
+from solver_service.numerics.friction import GRAVITY, inverse_cube_root
 from solver_service.numerics.warp_modules import SUPPORT_MODULE
 
 
@@ -38,15 +41,19 @@ def state_at_face(
     z: float,
     drag: float,
     dx: float,
+    friction_drop: float,
     s: EdgeSegments,
 ) -> edge_state:
-    """State at a face of a segment that is no wall, from the cell inside; `u` is outwards [m/s]."""
+    """State at a face of a segment that is no wall, from the cell inside; `u` is outwards [m/s].
+
+    `friction_drop` is the fall of the surface per cell by friction [m].
+    """
     k = s.segment[edge, face]
-    state = edge_state(h, u, 0.0)
+    state = edge_state(h, u, PASSES)
     if s.kind[k] == EDGE_OPEN:
         state = open_state(h, u, s.rest_h[edge, face], s.rest_u[edge, face])
     elif s.kind[k] == EDGE_STAGE:
-        state = stage_state(h, u, wp.float32(s.level[k] - wp.float64(z)))
+        state = stage_state(h, u, wp.float32(s.level[k] - wp.float64(z)) + 0.5 * friction_drop)
     elif s.kind[k] == EDGE_DISCHARGE:
         total = wp.float64(0.0)
         for c in range(s.first_chunk[k], s.first_chunk[k + 1]):
@@ -65,12 +72,12 @@ def fill_ghost_cells(
     clock: wp.array(dtype=wp.float64),
     ghosts: wp.array(dtype=wp.int32),
     z: wp.array2d(dtype=wp.float32),
-    drag: wp.array2d(dtype=wp.float32),
     dx: float,
     nrows: int,
     ncols: int,
     s: EdgeSegments,
     # outputs
+    drag: wp.array2d(dtype=wp.float32),
     h: wp.array2d(dtype=wp.float32),
     u: wp.array2d(dtype=wp.float32),
     v: wp.array2d(dtype=wp.float32),
@@ -82,11 +89,11 @@ def fill_ghost_cells(
         clock: see `clock_kernels`.
         ghosts: flat padded numbers of the ghost cells to fill.
         z: bed [m], padded.
-        drag: g n^2 [m^(1/3)], padded.
         dx: cell side [m].
         nrows: grid rows.
         ncols: grid columns.
         s: edge segments.
+        drag: g n^2 [m^(1/3)], padded; none in ghost cells whose surface does not fall.
         h: depth [m], padded.
         u: velocity [m/s], padded.
         v: velocity [m/s], padded.
@@ -105,6 +112,8 @@ def fill_ghost_cells(
     if col >= ncols:
         from_col = wp.max(2 * ncols - 1 - col, 0)
     h_in = h[from_row + 2, from_col + 2]
+    if h_in > 0.0:
+        h_in = wp.max(h_in + (z[from_row + 2, from_col + 2] - z[i, j]), 0.0)
     u_in = u[from_row + 2, from_col + 2]
     v_in = v[from_row + 2, from_col + 2]
     beside_x = col < 0 or col >= ncols
@@ -118,23 +127,37 @@ def fill_ghost_cells(
     edge = wp.where(by_x, edge_x, edge_y)
     face = wp.where(by_x, from_row, from_col)
     sign = wp.where(edge == 0 or edge == 2, -1.0, 1.0)
-    state = edge_state(0.0, 0.0, 1.0)
+    state = edge_state(0.0, 0.0, ACTS_AS_WALL)
     if s.segment[edge, face] >= 0:
         cell = face_cell(edge, face, nrows, ncols)
         a = cell[0]
         b = cell[1]
-        normal = wp.where(by_x, u[a, b], v[a, b])
-        state = state_at_face(edge, face, h[a, b], sign * normal, z[a, b], drag[a, b], dx, s)
-        if state[2] == 0.0:
+        normal = sign * wp.where(by_x, u[a, b], v[a, b])
+        step = wp.int32(sign)
+        drop = z[a, b] - wp.where(by_x, z[a, b + step], z[a + step, b])
+        friction_drop = float(0.0)
+        if h[a, b] > 0.0:
+            root = inverse_cube_root(h[a, b])
+            slope = drag[a, b] * (root * root) * (root * root) * wp.abs(normal) * normal / GRAVITY
+            friction_drop = wp.clamp(slope * dx, wp.min(drop, 0.0), wp.max(drop, 0.0))
+        elif drop < 0.0:
+            friction_drop = drop
+        state = state_at_face(edge, face, h[a, b], normal, z[a, b], drag[a, b], dx, friction_drop, s)
+        drag[i, j] = drag[a, b]
+        if state[2] != ACTS_AS_WALL:
+            drag[i, j] = wp.where(drop != 0.0, drag[a, b], 0.0)
             along = wp.where(state[1] > 0.0, wp.where(by_x, v[a, b], u[a, b]), 0.0)
             h_in = state[0]
+            if state[2] == PASSES and h_in > 0.0 and drop != 0.0:
+                level = h_in + (z[a, b] - z[i, j]) * (1.0 - friction_drop / drop)
+                h_in = wp.max(level, 0.5 * h_in)
             u_in = wp.where(by_x, sign * state[1], along)
             v_in = wp.where(by_x, along, sign * state[1])
             kind = s.kind[s.segment[edge, face]]
             if (kind == EDGE_STAGE or kind == EDGE_DISCHARGE) and clock[CLOCK_DT] > wp.float64(0.0):
                 wave = wp.abs(state[1]) + wp.sqrt(GRAVITY * state[0])
                 wp.atomic_max(wave_slots, flat % wave_slots.shape[0], wave)
-    if state[2] != 0.0:
+    if state[2] == ACTS_AS_WALL:
         if by_x:
             u_in = -u_in
         else:
@@ -164,32 +187,45 @@ def ghost_tiles(ghosts: npt.NDArray[np.int32], nrows: int, ncols: int) -> npt.ND
     return (tile_rows * -(-ncols // TILE) + tile_cols).astype(np.int64)
 
 
-def pad_bed(z_b: FloatRaster, segment: npt.NDArray[np.int32]) -> FloatRaster:
-    """Bed with ghost cells: mirrored at walls, continued level at other edges."""
-    return _pad(z_b, segment, lambda inside: inside)
-
-
-def pad_drag(drag: FloatRaster, segment: npt.NDArray[np.int32]) -> FloatRaster:
-    """G n^2 with ghost cells: mirrored at walls, none at other edges, whose state no friction may change."""
-    return _pad(drag, segment, np.zeros_like)
-
-
-def _pad(
-    raster: FloatRaster,
+def pad_bed(
+    z_b: FloatRaster,
     segment: npt.NDArray[np.int32],
-    beyond: Callable[[FloatRaster], FloatRaster],
+    fall_max: npt.NDArray[np.float32],
+    rise_max: npt.NDArray[np.float32],
 ) -> FloatRaster:
-    """Mirror a raster at walls; elsewhere both ghost cells hold what `beyond` makes of the edge cell."""
-    nrows, ncols = raster.shape
-    padded = np.pad(raster, GHOSTS, mode="symmetric").astype(np.float32)
+    """Bed with ghost cells: mirrored at walls, continued at other edges.
+
+    Args:
+        z_b: bed [m], [nrows, ncols].
+        segment: segment of each face, -1 for walls, [4, longest edge].
+        fall_max: largest fall towards the edge that goes on behind it [m per cell], same shape; what falls
+            more goes on level.
+        rise_max: largest rise, alike.
+    """
+    nrows, ncols = z_b.shape
+    padded = np.pad(z_b, GHOSTS, mode="symmetric").astype(np.float32)
     inside = (slice(GHOSTS, GHOSTS + nrows), slice(GHOSTS, GHOSTS + ncols))
     edges = (
-        (padded[inside[0], :GHOSTS].T, raster[:, 0]),
-        (padded[inside[0], -GHOSTS:].T, raster[:, -1]),
-        (padded[:GHOSTS, inside[1]], raster[0]),
-        (padded[-GHOSTS:, inside[1]], raster[-1]),
+        (padded[inside[0], GHOSTS - 1 :: -1].T, z_b[:, 0], z_b[:, 1]),
+        (padded[inside[0], -GHOSTS:].T, z_b[:, -1], z_b[:, -2]),
+        (padded[GHOSTS - 1 :: -1, inside[1]], z_b[0], z_b[1]),
+        (padded[-GHOSTS:, inside[1]], z_b[-1], z_b[-2]),
     )
-    for (ghosts, cells), owners in zip(edges, segment, strict=True):
-        passable = owners[: cells.size] >= 0
-        ghosts[:, passable] = beyond(cells[passable])
+    for number, (ghosts, cell, inner) in enumerate(edges):
+        passable = segment[number, : cell.size] >= 0
+        fall = inner - cell
+        goes_on = (fall <= fall_max[number, : cell.size]) & (-fall <= rise_max[number, : cell.size])
+        fall = np.where(goes_on, fall, np.float32(0.0))
+        for layer in range(GHOSTS):
+            ghosts[layer, passable] = (cell - (layer + 1) * fall)[passable]
+    for row in (0, nrows - 1):  # corners are the mirror images of what stands beside them
+        rows = slice(0, GHOSTS) if row == 0 else slice(nrows + GHOSTS, None)
+        for edge, west in ((0, True), (1, False)):
+            cols = slice(0, GHOSTS) if west else slice(ncols + GHOSTS, None)
+            if segment[edge, row] < 0:
+                beside = padded[rows, inside[1]]
+                padded[rows, cols] = beside[:, 1::-1] if west else beside[:, : -GHOSTS - 1 : -1]
+            else:
+                beside = padded[inside[0], cols]
+                padded[rows, cols] = beside[1::-1] if row == 0 else beside[: -GHOSTS - 1 : -1]
     return padded

@@ -22,7 +22,6 @@ from solver_service.numerics.engine import Engine, StepCollapse, StepParts, Stop
 from solver_service.numerics.fields import STATE_NAMES, TILE, FieldStore, FloatRaster, Scheme
 from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
-from solver_service.numerics.ghost_kernels import pad_bed, pad_drag
 from solver_service.numerics.infiltration import GroundUptake
 from solver_service.numerics.kernel_engine import KernelEngine
 from solver_service.numerics.maxima import Maxima, begin_maxima, end_wet_spells, read_maxima
@@ -63,7 +62,7 @@ class ShallowWaterSolver:
         self._edges = Edges(model, params, store)
         self._set_bed(model.z_b)
         drag = float(GRAVITY) * np.broadcast_to(np.asarray(model.manning_n, np.float64), model.shape) ** 2
-        store.write_padded("drag", pad_drag(drag.astype(np.float32), self._edges.segment))
+        store.write_padded("drag", np.pad(drag.astype(np.float32), 2, mode="symmetric"))
         self._tiles = ActiveTiles(store, params.depth_film, model.infiltration is not None)
         at_edges = (self._edges,) if self._edges.count else ()
         self._after_step = at_edges + parts_of(model, params, store, self._tiles)
@@ -86,7 +85,7 @@ class ShallowWaterSolver:
     def _walled(self, z_b: FloatRaster) -> FloatRaster:
         if self.model.blocked is not None:
             z_b = np.where(self.model.blocked, z_b.max() + np.float32(WALL_HEIGHT), z_b)
-        return pad_bed(z_b, self._edges.segment)
+        return self._edges.pad_bed(z_b)
 
     def _scheme(self) -> Scheme:
         params, scheme = self.params, Scheme()
