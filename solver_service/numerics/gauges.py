@@ -14,7 +14,10 @@ from solver_service.numerics.gauge_kernels import advance_gauge_cursor, record_g
 from solver_service.numerics.params import SolverParams
 
 DRAIN_STEPS = 256
-"""Steps between two calls of `GaugeRecorder.drain`, at most."""
+"""Steps between two calls of `GaugeRecorder.drain` for which there is always room."""
+
+ANY_NUMBER = 1 << 30
+"""More steps than anybody takes between two calls."""
 
 
 @dataclass(frozen=True)
@@ -92,8 +95,14 @@ class GaugeRecorder:
         """Whether the next record stands at or before `time` [s]; for devices whose memory the host sees."""
         return self.count > 0 and int(self._cursor.numpy()[0]) * self.interval <= time
 
+    def steps_with_room(self, span: float) -> int:
+        """Steps that may be taken before the next `drain` on the way over `span` seconds."""
+        if not self.count or span / self.interval + 2.0 <= self._records.shape[0]:
+            return ANY_NUMBER
+        return DRAIN_STEPS
+
     def drain(self) -> None:
-        """Fetch the new records from the device; at least once in `DRAIN_STEPS` steps."""
+        """Fetch the new records from the device; see `steps_with_room`."""
         if not self.count:
             return
         following, first = (int(value) for value in self._cursor.numpy())

@@ -4,11 +4,15 @@ Four steps follow one refresh of the tile list; this body is repeated while the 
 of the target (`wp.capture_while`; on CUDA captured once as a graph, so that the host waits for nothing in
 between). Steps after the landing find dt = 0 and copy the state, so that the body always ends in the buffer
 it began with.
+
+The graph runs to the target, unless somebody may want to stop before: then to a number of steps that takes
+about `QUESTION_SECONDS`, as measured so far. Where a launch ends changes no bit of the result.
 """
 
 from __future__ import annotations
 
 import gc
+import time
 
 import numpy as np
 import warp as wp
@@ -27,7 +31,6 @@ from solver_service.numerics.clock_kernels import (
 )
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
 from solver_service.numerics.fields import Fields
-from solver_service.numerics.gauges import DRAIN_STEPS
 from solver_service.numerics.ghost_kernels import ghost_cells
 from solver_service.numerics.step_kernels import keep_class_arrivals, step_active_tiles
 from solver_service.numerics.tile_list_kernels import decide_and_begin_list
@@ -40,6 +43,12 @@ from solver_service.numerics.tile_step_kernels import (
 
 WAVE_SLOTS = 16
 """Places of the largest wave speed: few, since one thread reads them all before every step."""
+
+QUESTION_SECONDS = 0.05
+"""Wall time after which `should_stop` is asked again, about."""
+
+FIRST_STEPS = 64
+"""Steps before it is asked for the second time, when nothing has been measured yet."""
 
 CUDA_THREADS = 1 << 18
 CPU_THREADS = 1
@@ -70,18 +79,31 @@ class KernelEngine(Engine):
         self._blocks = max(1, BLOCKS_PER_MULTIPROCESSOR * wp.get_device(device).sm_count)
         self._host_memory = wp.zeros(0 if self._is_cuda else HOST_MEMORY, dtype=wp.float32, device=device)
         self._graph: wp.Graph | None = None
+        self._steps_between_questions = FIRST_STEPS
 
     def advance(self, target: float, should_stop: StopQuestion | None) -> bool:
-        """See `Engine.advance`; `should_stop` is asked every `DRAIN_STEPS` steps."""
+        """See `Engine.advance`."""
         self._upload(target)
         self.parts.tiles.begin_interval()
         while self.time < target:
-            if should_stop is not None and should_stop():
-                return False
-            self._launch_steps()
+            limit = self.parts.gauges.steps_with_room(target - self.time)
+            if should_stop is not None:
+                if should_stop():
+                    return False
+                limit = min(limit, self._steps_between_questions)
+            began, steps = time.perf_counter(), self.step_count
+            self._launch_steps(limit)
             self._download()
+            self._learn(self.step_count - steps, time.perf_counter() - began)
             self.parts.gauges.drain()
         return True
+
+    def _learn(self, steps: int, seconds: float) -> None:
+        """Choose how many steps go between two questions, from how long the last ones took."""
+        now = self._steps_between_questions
+        self._steps_between_questions = max(
+            REFRESH_STEPS, min(4 * now, round(QUESTION_SECONDS * steps / max(seconds, 1e-6)))
+        )
 
     def _upload(self, target: float) -> None:
         clock = np.zeros(CLOCK_LENGTH)
@@ -90,19 +112,18 @@ class KernelEngine(Engine):
         slots = np.zeros(WAVE_SLOTS, np.float32)
         slots[0] = self.wave_speed
         self._wave_slots.assign(slots)
-        self._counts.zero_()
 
     def _download(self) -> None:
         counts = self._counts.numpy()
         clock = self._clock.numpy()
+        self.step_count += int(counts[int(COUNT_STEPS)])
         self.time = float(clock[int(CLOCK_TIME)])
         if counts[int(COUNT_FAILED)]:
             raise StepCollapse
         self.wave_speed = float(self._wave_slots.numpy().max())
 
-    def _launch_steps(self) -> None:
-        before = int(self._counts.numpy()[int(COUNT_STEPS)])
-        self._counts.assign(np.array([before, before + DRAIN_STEPS, 0], np.int32))
+    def _launch_steps(self, limit: int) -> None:
+        self._counts.assign(np.array([0, limit, 0], np.int32))
         self._decide()
         if not self._is_cuda:
             wp.capture_while(self._go_on, self._take_steps)
@@ -114,7 +135,6 @@ class KernelEngine(Engine):
                     wp.capture_while(self._go_on, self._take_steps)
                 self._graph = capture.graph
             wp.capture_launch(self._graph)
-        self.step_count += int(self._counts.numpy()[int(COUNT_STEPS)]) - before
 
     def _decide(self) -> None:
         tiles = self.parts.tiles

@@ -131,8 +131,10 @@ STEP_SOURCE = (
             const float* const L = P + 18 * (r + 1) + c;
             const float* const R = L + 1;
             const int o = 20 * (r + 2) + (c + 1);
-            auto q = FACE(L[0], L[3*324], L[1*324], L[4*324], L[2*324], L[5*324], L[6*324], L[11*324], L[12*324],
-                R[0], R[3*324], R[1*324], R[4*324], R[2*324], R[5*324], R[6*324], R[11*324], R[12*324],
+            auto q = FACE(L[0], L[3*324], L[1*324], L[4*324], L[2*324], L[5*324], L[6*324],
+                L[11*324], L[12*324],
+                R[0], R[3*324], R[1*324], R[4*324], R[2*324], R[5*324], R[6*324],
+                R[11*324], R[12*324],
                 Z[o + 1] - Z[o], dt_dx, s.contact);
             UNROLL for (int m = 0; m < 4; ++m) X[272 * m + k] = q[m];
         }
@@ -141,8 +143,10 @@ STEP_SOURCE = (
             const float* const L = P + 18 * r + (c + 1);
             const float* const R = L + 18;
             const int o = 20 * (r + 1) + (c + 2);
-            auto q = FACE(L[0], L[7*324], L[2*324], L[9*324], L[1*324], L[8*324], L[10*324], L[11*324], L[12*324],
-                R[0], R[7*324], R[2*324], R[9*324], R[1*324], R[8*324], R[10*324], R[11*324], R[12*324],
+            auto q = FACE(L[0], L[7*324], L[2*324], L[9*324], L[1*324], L[8*324], L[10*324],
+                L[11*324], L[12*324],
+                R[0], R[7*324], R[2*324], R[9*324], R[1*324], R[8*324], R[10*324],
+                R[11*324], R[12*324],
                 Z[o + 20] - Z[o], dt_dx, s.contact);
             UNROLL for (int m = 0; m < 4; ++m) Y[272 * m + k] = q[m];
         }
@@ -239,7 +243,8 @@ def with_names(snippet: str) -> str:
     for word, function in names.items():
         snippet = snippet.replace(word + "(", function.native_func + "(")
     return (
-        snippet.replace("NO_UNROLL", '_Pragma("unroll 1")').replace("UNROLL", '_Pragma("unroll")')
+        snippet.replace("NO_UNROLL", '_Pragma("unroll 1")')
+        .replace("UNROLL", '_Pragma("unroll")')
         .replace("FLOATS", str(SHARED_FLOATS))
         .replace("WORDS", str(SHARED_WORDS))
     )
