@@ -52,3 +52,57 @@ def test_the_synthetic_valley_is_written_and_floods_its_village(tmp_path: Path) 
     assert village[0.0] == 0.0
     assert max(village.values()) > 0.5
     assert figures["water_budget_m3"]["initial"] > 1e5
+
+
+def column(table: Path, name: str, **where: str) -> list[float]:
+    """One column of the lines of a table that have the values asked for."""
+    with table.open() as lines:
+        return [
+            float(row[name])
+            for row in csv.DictReader(lines)
+            if all(row[key] == value for key, value in where.items())
+        ]
+
+
+def test_the_levee_breaks_and_the_town_is_flooded_through_the_gap(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+
+    figures = run(EXAMPLES / "levee_breach", out)
+
+    budget = figures["water_budget_m3"]
+    assert figures["warnings"] == []
+    assert abs(figures["volume_error_relative"]) < 1e-6
+    # 5 minutes of 20 mm/h and 10 of 80 mm/h on 240 000 m2; the meadow takes most of it and some river water.
+    assert budget["rain"] == pytest.approx((5.0 * 20.0 + 10.0 * 80.0) / 60e3 * 240_000.0, rel=1e-3)
+    assert 0.0 < budget["infiltration"] < 2.0 * budget["rain"]
+    assert budget["edges"]["river"]["in"] > 1e5
+    (levee,) = figures["breaches"]
+    assert (levee["started_at_s"], levee["level_m"]) == (300.0, pytest.approx(2.0))
+    assert levee["width_m"] > 10.0
+
+    town = gauge(out, "town")
+    assert max(depth for time, depth in town.items() if time < 300.0) < 0.05
+    assert max(town.values()) > 0.2
+    through = column(out / "sections.csv", "discharge_m3_s", section="behind the levee")
+    assert max(through[:25]) < 1.0
+    assert max(through) > 15.0
+    assert column(out / "structures.csv", "moved_m3", structure="road")[-1] > 100.0
+    assert {"infiltration.tif", "arrival_0_1m.tif", "arrival_1m.tif"} <= {path.name for path in out.iterdir()}
+
+    page = (EXAMPLES.parent / "docs" / "reference" / "results.md").read_text(encoding="utf-8")
+    names = {path.name for path in out.iterdir() if not path.name.startswith("arrival_")}
+    tables = [
+        (out / f"{name}.csv").read_text().split("\n")[0] for name in ("gauges", "sections", "structures")
+    ]
+    columns = {column for table in tables for column in table.split(",")}
+    told = {*names, *columns, *figures, *budget, *figures["smallest_mean_step"], *levee}
+    assert not {word for word in told if f"`{word}`" not in page}
+
+
+def test_the_how_to_page_shows_the_example_as_it_is() -> None:
+    page = (EXAMPLES.parent / "docs" / "how_to" / "prepare_a_case.md").read_text(encoding="utf-8")
+    case = (EXAMPLES / "levee_breach" / "case.toml").read_text(encoding="utf-8")
+
+    assert f"```toml\n{case}```\n" in page
+    files = {path.name for path in (EXAMPLES / "levee_breach").iterdir()} - {"case.toml"}
+    assert not {name for name in files if f"`{name}`" not in page}
