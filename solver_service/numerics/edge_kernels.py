@@ -8,12 +8,13 @@ so that what a Riemann solver lets through more or less than asked is made up fo
 entered never drifts from V. It is spread over the cells of the segment in proportion to their conveyance
 h^(5/3) / n; no depth counts for less than its share of the critical flow of the same discharge over the bare
 bed, so that the first water takes the lowest cells and films on banks take next to nothing. Water that is
-to leave but is not there is forgiven and booked as unmet.
+to leave but is not there is forgiven and booked as unmet. The series are looked up one step ahead too, so
+that a sudden rise does not meet a giant step.
 
 After the step: how much came in and went out through each face. A ghost cell whose neighbour along the edge
-belongs to another segment is predicted a little off the mirror image: what came in through an open edge, and
-what passed a wall beside a segment, is put back at once, so that the one is never a source and the other
-tight.
+belongs to another segment is predicted a little off the mirror image: what came in through an edge that only
+lets out, and what passed a wall beside a segment, is put back at once, so that the one is never a source and
+the other tight.
 
 Cells of an edge are dealt to threads in chunks. Sums are float64 in a fixed order.
 """
@@ -21,9 +22,15 @@ Cells of an edge are dealt to threads in chunks. Sums are float64 in a fixed ord
 import warp as wp
 
 from solver_service.numerics.clock_kernels import CLOCK_BEFORE, CLOCK_DT, CLOCK_TIME
-from solver_service.numerics.edge_states import EDGE_DISCHARGE, EDGE_OPEN, EDGE_STAGE, EDGE_WALL
+from solver_service.numerics.edge_states import (
+    EDGE_DISCHARGE,
+    EDGE_NORMAL_DEPTH,
+    EDGE_OPEN,
+    EDGE_STAGE,
+    EDGE_WALL,
+)
 from solver_service.numerics.fields import Fields
-from solver_service.numerics.friction import inverse_cube_root
+from solver_service.numerics.friction import GRAVITY, inverse_cube_root
 from solver_service.numerics.warp_modules import SUPPORT_MODULE
 
 RATING_LENGTH = 33
@@ -49,7 +56,7 @@ class EdgeSegments:
     volumes: wp.array(dtype=wp.float64)
     """Integral of the series from time 0 to `times`."""
     rating_level: wp.array2d(dtype=wp.float32)
-    """Levels [m], [segments, RATING_LENGTH]."""
+    """Levels of discharges [m], [segments, RATING_LENGTH]; the first is the lowest bed, of stages too."""
     rating_discharge: wp.array2d(dtype=wp.float32)
     """Critical discharge over the bare bed at these levels [m3/s]."""
     chunk: wp.array2d(dtype=wp.int32)
@@ -114,14 +121,34 @@ def volume_at(s: EdgeSegments, k: int, time: wp.float64) -> wp.float64:
     return s.volumes[n] + part * mean
 
 
+@wp.func
+def critical_level(s: EdgeSegments, k: int, discharge: wp.float64) -> float:
+    """Level of the critical flow of a discharge over the bare bed of segment k [m]."""
+    q = wp.float32(discharge)
+    n = int(0)
+    while n + 1 < RATING_LAST and s.rating_discharge[k, n + 1] < q:
+        n += 1
+    rise = s.rating_discharge[k, n + 1] - s.rating_discharge[k, n]
+    part = (q - s.rating_discharge[k, n]) / wp.max(rise, 1.0e-12)
+    level = s.rating_level[k, n] + part * (s.rating_level[k, n + 1] - s.rating_level[k, n])
+    return wp.max(level, s.rating_level[k, 0])
+
+
 @wp.kernel(module=SUPPORT_MODULE)
-def decide_edge_values(clock: wp.array(dtype=wp.float64), cell_area: wp.float64, s: EdgeSegments):
+def decide_edge_values(
+    clock: wp.array(dtype=wp.float64),
+    cell_area: wp.float64,
+    s: EdgeSegments,
+    # outputs
+    wave_slots: wp.array(dtype=wp.float32),
+):
     """Set level, discharge due and what is unmet of every segment for the step of the clock.
 
     Args:
         clock: see `clock_kernels`.
         cell_area: dx^2 [m2].
         s: the segments.
+        wave_slots: largest wave speed that the next step may meet [m/s], any slot.
     """
     k = wp.tid()
     before = clock[CLOCK_BEFORE]
@@ -129,6 +156,9 @@ def decide_edge_values(clock: wp.array(dtype=wp.float64), cell_area: wp.float64,
     dt = clock[CLOCK_DT]
     if s.kind[k] == EDGE_STAGE:
         s.level[k] = value_at(s, k, wp.float64(0.5) * (before + after))
+        if dt > wp.float64(0.0):
+            depth = wp.float32(value_at(s, k, after + dt)) - s.rating_level[k, 0]
+            wp.atomic_max(wave_slots, k % wave_slots.shape[0], wp.sqrt(GRAVITY * wp.max(depth, 0.0)))
     if s.kind[k] == EDGE_DISCHARGE and dt > wp.float64(0.0):
         flow = wp.float64(0.0)
         for c in range(s.first_chunk[k], s.first_chunk[k + 1]):
@@ -146,14 +176,9 @@ def decide_edge_values(clock: wp.array(dtype=wp.float64), cell_area: wp.float64,
             due = wp.min(due, wp.float64(0.0))
         due = due / dt
         s.due[k] = due
-        n = int(0)
-        q = wp.float32(due)
-        while n + 1 < RATING_LAST and s.rating_discharge[k, n + 1] < q:
-            n += 1
-        rise = s.rating_discharge[k, n + 1] - s.rating_discharge[k, n]
-        part = (q - s.rating_discharge[k, n]) / wp.max(rise, 1.0e-12)
-        level = s.rating_level[k, n] + part * (s.rating_level[k, n + 1] - s.rating_level[k, n])
-        s.level[k] = wp.float64(wp.max(level, s.rating_level[k, 0]))
+        s.level[k] = wp.float64(critical_level(s, k, due))
+        depth = critical_level(s, k, value_at(s, k, after + dt)) - s.rating_level[k, 0]
+        wp.atomic_max(wave_slots, k % wave_slots.shape[0], 2.0 * wp.sqrt(GRAVITY * depth))
 
 
 @wp.func
@@ -242,7 +267,8 @@ def book_edge_flow(f: Fields, axis: int, nrows: int, ncols: int, s: EdgeSegments
     for face in range(s.chunk[c, 1], s.chunk[c, 2]):
         seen = s.flow_seen[edge, face]
         flow = f.edge_flow[edge, face]
-        if (kind == EDGE_OPEN and flow < seen) or (kind == EDGE_WALL and flow != seen):
+        lets_out = kind == EDGE_OPEN or kind == EDGE_NORMAL_DEPTH
+        if (lets_out and flow < seen) or (kind == EDGE_WALL and flow != seen):
             cell = face_cell(edge, face, nrows, ncols)
             h = f.h_out[cell[0], cell[1]]
             kept = wp.max(h + wp.float32(flow - seen), 0.0)

@@ -84,6 +84,7 @@ class Edges:
         store: rasters of the run.
     """
 
+    dt_max = math.inf
     names = tuple(f"edge_{name}" for name in (*SEGMENT_KEPT, *FACE_KEPT))
 
     def __init__(self, model: FloodModel, params: SolverParams, store: FieldStore) -> None:
@@ -100,8 +101,6 @@ class Edges:
         self._arrays: dict[str, wp.array] = {}
         self._segments = self._build()
         self.set_bed(model.z_b)
-        fastest = max((self._inflow_speed(k) for k in range(self.count)), default=0.0)
-        self.dt_max = params.cfl * model.dx / fastest if fastest > 0.0 else math.inf
 
     # --- arrays ------------------------------------------------------------------------------------
 
@@ -188,16 +187,17 @@ class Edges:
 
     def set_bed(self, z_b: FloatRaster) -> None:
         """Take over a bed [m], [nrows, ncols], for the critical flow of the discharges."""
-        if not self._has_discharge:
+        if not self._has_series:
             return
         levels, discharges = (np.array(self._arrays[f"rating_{n}"].numpy()) for n in ("level", "discharge"))
         for k, b in enumerate(self._boundaries):
+            bed = edge_cells(z_b, b.edge)[b.first : b.last]
+            if self._model.blocked is not None:
+                bed = bed[~edge_cells(self._model.blocked, b.edge)[b.first : b.last]]
             if b.kind == "discharge" and b.values is not None:
-                cells = slice(b.first, b.last)
-                bed = edge_cells(z_b, b.edge)[cells]
-                if self._model.blocked is not None:
-                    bed = bed[~edge_cells(self._model.blocked, b.edge)[cells]]
                 levels[k], discharges[k] = critical_rating(bed, self._model.dx, max(0.0, b.values.max()))
+            elif bed.size:
+                levels[k] = bed.min()
         self._arrays["rating_level"].assign(levels)
         self._arrays["rating_discharge"].assign(discharges)
 
@@ -210,23 +210,18 @@ class Edges:
             cells[:] = np.where(rise > 0.0, np.maximum(cells - rise, 0.0), cells)
         self._arrays["rest_h"].assign(rest_h)
 
-    def _inflow_speed(self, k: int) -> float:
-        """Largest wave speed of the critical flow of discharge segment k over the bare bed [m/s]."""
-        if self._boundaries[k].kind != "discharge":
-            return 0.0
-        levels = self._arrays["rating_level"].numpy()[k]
-        return 2.0 * math.sqrt(GRAVITY * float(levels[-1] - levels[0]))
-
     # --- before the step ---------------------------------------------------------------------------
 
-    def wave_speed(self, time: float) -> float:
-        """Largest wave speed that the first step from `time` [s] may meet at the edges [m/s]."""
+    def wave_speed(self, time: float, dt: float) -> float:
+        """Largest wave speed that a first step of `dt` from `time` [s] may meet at the edges [m/s]."""
         fastest = 0.0
-        for b in self._boundaries:
-            if b.kind == "stage" and b.times is not None and b.values is not None:
-                bed = edge_cells(self._store.interior("z"), b.edge)[b.first : b.last]
-                depth = np.interp(time, b.times, b.values) - float(bed.min())
-                fastest = max(fastest, 2.0 * math.sqrt(GRAVITY * max(0.0, float(depth))))
+        levels, discharges = (self._arrays[f"rating_{n}"].numpy() for n in ("level", "discharge"))
+        for k, b in enumerate(self._boundaries):
+            if b.times is not None and b.values is not None:
+                soon = np.interp([time, time + dt], b.times, b.values).max()
+                level = soon if b.kind == "stage" else np.interp(soon, discharges[k], levels[k])
+                depth = max(0.0, float(level - levels[k, 0]))
+                fastest = max(fastest, 2.0 * math.sqrt(GRAVITY * depth))
         return fastest
 
     def fill(
@@ -246,7 +241,7 @@ class Edges:
         launches: list[tuple[wp.Kernel, int, list[object], list[wp.array]]] = []
         if self._has_series:
             cell_area = self._model.dx * self._model.dx
-            launches.append((decide_edge_values, self.count, [clock, cell_area, segments], []))
+            launches.append((decide_edge_values, self.count, [clock, cell_area, segments], [waves]))
         if self._has_discharge:
             inputs = [fields.h, fields.z, fields.drag, self._depth_dry, *size, segments]
             launches.append((weigh_edge_cells, self.chunk_count, inputs, []))

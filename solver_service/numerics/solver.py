@@ -172,7 +172,8 @@ class ShallowWaterSolver:
         return array
 
     def _water_changed(self) -> None:
-        self._engine.wave_speed = max(float(self._wave_speeds().max()), self._edges.wave_speed(self.time))
+        at_edges = self._edges.wave_speed(self.time, self._dt_max)
+        self._engine.wave_speed = max(float(self._wave_speeds().max()), at_edges)
 
     def _wave_speeds(self) -> FloatRaster:
         h, u, v = (self._store.interior(name) for name in STATE_NAMES)
