@@ -36,6 +36,45 @@ discharge = 2.0
 [rain]
 rate = 5.0
 
+[infiltration]
+model = "horton"
+rate_initial = 50.0
+rate_final = 5.0
+decay = 2.0
+
+[[infiltration.zone]]
+polygon = [[1000, 2000], [1100, 2000], [1100, 2240]]
+rate_initial = 0.0
+rate_final = 0.0
+decay = 0.0
+
+[[weir]]
+line = [[1200.0, 2010.0], [1200.0, 2230.0]]
+crest = 305.0
+
+[[culvert]]
+inlet = [1155.0, 2125.0]
+outlet = [1255.0, 2125.0]
+inlet_level = 303.0
+outlet_level = 302.0
+diameter = 1.0
+
+[[pump]]
+inlet = [1055.0, 2125.0]
+discharge = 1.0
+start_level = 304.0
+stop_level = 303.0
+
+[[breach]]
+line = [[1105.0, 2085.0], [1105.0, 2155.0]]
+law = "verheij_van_der_knaap"
+start_time = 1.0
+duration = 5.0
+crest = 305.0
+bottom_level = 301.0
+width_initial = 1.0
+width_final = 40.0
+
 [[roughness.zone]]
 polygon = [[1000, 2000], [1100, 2000], [1100, 2240]]
 manning_n = 0.1

@@ -1,8 +1,13 @@
+import itertools
+import math
+import tempfile
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from solver_service.errors import CaseError
 from solver_service.scenario.quantities import DISCHARGE
@@ -49,3 +54,26 @@ def test_clock_times_count_from_the_start_whatever_their_offset(tmp_path: Path) 
 def test_what_is_no_series_is_refused_with_its_line(tmp_path: Path, text: str, message: str) -> None:
     with pytest.raises(CaseError, match=f"inflow.csv: .*{message}"):
         read_series(written(tmp_path, text), START, DISCHARGE)
+
+
+NUMBERS = st.one_of(
+    st.floats(-1e9, 1e9, allow_nan=False), st.sampled_from([math.nan, math.inf, -math.inf, 0.0, -1.0, 2e8])
+)
+
+
+@given(st.lists(st.tuples(NUMBERS, NUMBERS), max_size=6))
+def test_a_series_is_read_exactly_where_it_can_be_believed(rows: list[tuple[float, float]]) -> None:
+    times, values = [time for time, _ in rows], [value for _, value in rows]
+    sound = bool(rows) and all(map(math.isfinite, (*times, *values)))
+    sound = sound and all(a < b for a, b in itertools.pairwise(times))
+    sound = sound and all(DISCHARGE.low <= value <= DISCHARGE.high for value in values)
+    with tempfile.TemporaryDirectory() as folder:
+        path = written(Path(folder), "time_s,q\n" + "".join(f"{time!r},{value!r}\n" for time, value in rows))
+        if sound:
+            series = read_series(path, None, DISCHARGE)
+            assert (series.times.tolist(), series.values.tolist()) == (times, values)
+        else:
+            with pytest.raises(CaseError, match=r"^inflow.csv: (line \d|has no line of values)") as caught:
+                read_series(path, None, DISCHARGE)
+            assert str(caught.value).endswith(".")
+            assert "\n" not in str(caught.value)
