@@ -14,6 +14,7 @@ import warp as wp
 
 from solver_service.errors import DeviceError
 from solver_service.numerics.warp_modules import (
+    CUDA_MODULES,
     ROWS_MODULE,
     STEP_MODULE,
     STRUCTURE_MODULE,
@@ -142,6 +143,6 @@ def compile_for_cuda(architecture: int, folder: Path) -> list[Path]:
         The cubin files.
     """
     import_kernels()
-    for module in (SUPPORT_MODULE, STEP_MODULE, STRUCTURE_MODULE):
+    for module in CUDA_MODULES:
         wp.compile_aot_module(module, arch=architecture, module_dir=folder, use_ptx=False)
     return sorted(folder.glob("*.cubin"))

@@ -30,3 +30,6 @@ if platform.machine() in ("x86_64", "AMD64"):
     )
 SUPPORT_MODULE = _module("solver_service.numerics.warp_support")
 STRUCTURE_MODULE = _module("solver_service.numerics.warp_structures")
+
+CUDA_MODULES = (SUPPORT_MODULE, STEP_MODULE, STRUCTURE_MODULE)
+"""All that CUDA devices may be given: every module but that of the native rows."""
