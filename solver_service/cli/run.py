@@ -71,5 +71,23 @@ def _tell(summary: dict[str, Any]) -> None:
     print(f"{summary['title']}{mark}")
     for label, key, form in ROWS:
         print(f"  {label:<24}{form.format(summary[key])}")
+    for label, volume in _budget(summary["water_budget_m3"]):
+        print(f"  {label:<24}{volume:,.6g} m3")
+    step = summary["smallest_mean_step"]
+    place = f"cell (row {step['row']}, column {step['col']}) at {step['time_s']:g} s"
+    print(f"  {'smallest mean step':<24}{step['dt_s']:.3g} s, limited by {place}")
+    for warning in summary["warnings"]:
+        print(f"  warning: {warning}")
     if summary["licence"]:
         print(f"  {'data':<24}{summary['source']}; licence: {summary['licence']}")
+
+
+def _budget(budget: dict[str, Any]) -> list[tuple[str, float]]:
+    """The volumes of the water budget that are not nothing, with their names."""
+    rows = [("water at the start", budget["initial"]), ("rain", budget["rain"])]
+    rows += [(f"source {name}", volume) for name, volume in budget["sources"].items()]
+    for name, volumes in budget["edges"].items():
+        rows += [(f"in through {name}", volumes["in"]), (f"out through {name}", -volumes["out"])]
+    rows += [(f"structure {name}", -volume) for name, volume in budget["structures"].items()]
+    rows += [("into the ground", -budget["infiltration"]), ("cut by edits", -budget["edits"])]
+    return [*((name, volume) for name, volume in rows if volume), ("water at the end", budget["stored"])]

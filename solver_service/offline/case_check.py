@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver_service.numerics import ShallowWaterSolver, pick_device
+from solver_service.numerics.snapping import NORTH_FACE
+from solver_service.numerics.structures import Weir
 from solver_service.offline.case_features import case_features
 from solver_service.scenario import Case
 
@@ -46,6 +48,7 @@ def check_case(case: Case, device: str = "auto") -> CaseReport:
     report = CaseReport(warnings=list(case.warnings))
     _look_at_ground(case, report)
     _look_at_water(case, report)
+    _look_at_structures(case, report)
     _try_solver(case, pick_device(device), report)
     return report
 
@@ -119,6 +122,27 @@ def _look_at_water(case: Case, report: CaseReport) -> None:
             row, col = (round(part) for part in case.grid.to_cell(gauge.x, gauge.y))
             if model.blocked[min(row, case.grid.nrows - 1), min(col, case.grid.ncols - 1)]:
                 report.warnings.append(f"Gauge '{gauge.id}' stands on a cell without data.")
+
+
+def _look_at_structures(case: Case, report: CaseReport) -> None:
+    z_b, dx = case.model.z_b, case.grid.dx
+    for built in case.model.structures:
+        if isinstance(built, Weir):
+            faces = built.snapped(z_b.shape, dx).faces
+            levels, _ = built.face_levels(faces)
+            northern = faces[:, 2] == NORTH_FACE
+            rows, cols = faces[:, 0], faces[:, 1]
+            beyond = z_b[rows + northern, cols + ~northern]
+            if (levels <= np.maximum(z_b[rows, cols], beyond)).all():
+                report.warnings.append(
+                    f"The weir '{built.id}' lies below the ground everywhere: it does nothing."
+                )
+    for breach in case.model.breaches:
+        cells = breach.snapped(z_b.shape, dx).cells
+        if (z_b[cells[:, 0], cells[:, 1]] <= breach.bottom_level).all():
+            report.warnings.append(
+                f"The ground of the breach '{breach.id}' lies below its bottom level: it does nothing."
+            )
 
 
 def _rain(case: Case) -> str:

@@ -21,9 +21,22 @@ def read_breaches(tables: list[Table], inputs: Inputs) -> tuple[Breach, ...]:
     """Breaches in their order, each with an id.
 
     Raises:
-        CaseError: a key is not valid, or the bottom is not below the crest.
+        CaseError: a key is not valid, the bottom lies above the crest, or two breaches share a cell.
     """
-    return tuple(_read(table, number, inputs) for number, table in enumerate(tables, start=1))
+    breaches: list[Breach] = []
+    taken: dict[tuple[int, int], int] = {}
+    for number, table in enumerate(tables, start=1):
+        breach = _read(table, number, inputs)
+        for row, col in breach.snapped(inputs.grid.shape, inputs.grid.dx).cells.tolist():
+            other = taken.setdefault((row, col), number)
+            if other != number:
+                raise table.wrong(
+                    "line",
+                    f"it may eat cell (row {row}, column {col}), as number {other} may; lines further apart,"
+                    " or a smaller width_final or across, are allowed",
+                )
+        breaches.append(breach)
+    return tuple(breaches)
 
 
 def _read(table: Table, number: int, inputs: Inputs) -> Breach:

@@ -82,3 +82,20 @@ def test_rain_that_begins_late_is_not_counted_before(tmp_path: Path) -> None:
 
     assert "1 mm in all" in dict(report.facts)["rain"]
     assert any("r.csv: begins at 10 s" in warning for warning in report.warnings)
+
+
+def test_structures_that_do_nothing_are_told(tmp_path: Path) -> None:
+    line = "line = [[1205.0, 2060.0], [1205.0, 2180.0]]\n"
+    weirs = f'\n[[weir]]\nid = "low"\n{line}crest = 300.5\n[[weir]]\nid = "high"\n{line}crest = 307.0\n'
+    growth = "crest = 310.0\nduration = 5.0\nwidth_final = 20.0\n"
+    breaches = "".join(
+        f'\n[[breach]]\nid = "to {level}"\n{line.replace("1205.0", x)}{growth}bottom_level = {level}\n'
+        for level, x in ((309.0, "1155.0"), (301.0, "1255.0"))
+    )
+
+    report = check_case(load_case(write_case(tmp_path, CASE + weirs + breaches)), "cpu")
+
+    assert report.warnings == [
+        "The weir 'low' lies below the ground everywhere: it does nothing.",
+        "The ground of the breach 'to 309.0' lies below its bottom level: it does nothing.",
+    ]

@@ -74,7 +74,11 @@ def test_a_breach_after_the_end_is_told(tmp_path: Path) -> None:
         (LINEAR + 'law = "froehlich"', "law is 'froehlich'; 'linear', 'verheij_van_der_knaap' is allowed"),
         (LINEAR.replace("1105.0", "1005.0"), "breach-1"),
         (LINEAR.replace("1105.0", "9.0"), "lies off the terrain"),
-        (LINEAR + 'id = "a"\n' + LINEAR + 'id = "a"', "'a' is the id of a breach, and of a breach"),
+        (LINEAR + LINEAR, r"number 2 line is .*; it may eat cell \(row 10, column 10\), as number 1 may"),
+        (
+            LINEAR + 'id = "a"\n' + LINEAR.replace("1105.0", "1205.0") + 'id = "a"\ncrest = 304.0',
+            "'a' is the id of a breach, and of a breach",
+        ),
     ],
 )
 def test_a_bad_breach_is_told(tmp_path: Path, table: str, message: str) -> None:
