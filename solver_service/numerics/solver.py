@@ -30,6 +30,7 @@ from solver_service.numerics.params import SolverParams
 from solver_service.numerics.row_engine import RowEngine, rows_compile
 from solver_service.numerics.snapshot import Snapshot
 from solver_service.numerics.state_keeping import check_snapshot, put_back, take_snapshot
+from solver_service.numerics.weirs import Weirs
 from solver_service.numerics.wet_block_kernels import BLOCK_STRIDE, classify_blocks, quantise_depth
 
 WALL_HEIGHT = 1000.0
@@ -64,8 +65,8 @@ class ShallowWaterSolver:
         drag = float(GRAVITY) * np.broadcast_to(np.asarray(model.manning_n, np.float64), model.shape) ** 2
         store.write_padded("drag", np.pad(drag.astype(np.float32), 2, mode="symmetric"))
         self._tiles = ActiveTiles(store, params.depth_film, model.infiltration is not None)
-        at_edges = (self._edges,) if self._edges.count else ()
-        self._after_step = at_edges + parts_of(model, params, store, self._tiles)
+        self._after_step = parts_of(model, params, store, self._tiles, self._scheme(), self._edges)
+        self._weirs = next((part for part in self._after_step if isinstance(part, Weirs)), None)
         self._breaches = next((part for part in self._after_step if isinstance(part, Breaches)), None)
         self._conduits = next((part for part in self._after_step if isinstance(part, Conduits)), None)
         self._tiles.keep_awake(changeable_cells(self._after_step, model.shape))
@@ -342,6 +343,8 @@ class ShallowWaterSolver:
         change = change_water(self._store, before, self.bed, self.params.depth_dry, self.model.dx)
         self._edits_volume += change.volume_cut
         end_wet_spells(self._store, self.time, self.params.depth_arrival)
+        if self._weirs is not None:
+            self._weirs.remember()
         self._water_changed()
         return change
 
