@@ -34,7 +34,7 @@ def test_a_person_gets_a_table_with_the_mark_and_the_licence(tmp_path: Path, fev
     assert answer.code == 0
     assert "A dam in a valley (hypothetical)" in answer.out
     assert "licence: public domain" in answer.out
-    for words in ("water volume error", "out through east-1", "water at the end", "limited by cell (row"):
+    for words in ("water volume error", "water at the start", "water at the end", "limited by cell (row"):
         assert words in answer.out
 
 
