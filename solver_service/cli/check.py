@@ -36,7 +36,7 @@ def check_and_tell(name: str, device: str, json_line: bool, geojson: Path | None
     for label, value in report.facts:
         print(f"  {label:<22}{value}")
     if case.licence or case.source:
-        print(f"  {'data':<22}{case.source}; licence: {case.licence or 'not said'}")
+        print(f"  {'data':<22}{case.source or 'source not said'}; licence: {case.licence or 'not said'}")
     for warning in report.warnings:
         print(f"  warning: {warning}")
     if not report.warnings:

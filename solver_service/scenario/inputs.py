@@ -169,7 +169,7 @@ class Inputs:
             kind: the nearest value, or linear between (means over finer cells).
 
         Raises:
-            CaseError: there is no such file.
+            CaseError: there is no such file, or it says nothing on the terrain.
             TerrainError: the file is not valid.
         """
         raster = read_dem(
@@ -183,7 +183,15 @@ class Inputs:
         grid = self.grid
         finer = grid.dx > 1.5 * raster.dx
         chosen: Literal["nearest", "linear", "average"] = "average" if finer and kind == "linear" else kind
-        return sample(raster, grid.x0, grid.y0, grid.dx, grid.nrows, grid.ncols, chosen).astype(np.float32)
+        values = sample(raster, grid.x0, grid.y0, grid.dx, grid.nrows, grid.ncols, chosen).astype(np.float32)
+        if np.isnan(values).all():
+            theirs, ours = ([round(edge, 3) for edge in box] for box in (raster.bounds, grid.extent))
+            raise table.wrong(
+                key,
+                f"it covers (xmin, ymin, xmax, ymax) {theirs} m and says nothing on the terrain"
+                f" {ours} m; a raster with values there is allowed",
+            )
+        return values
 
     def check_system(self, table: Table, key: str, raster: Raster) -> None:
         """Refuse a raster in another coordinate system than the terrain's.

@@ -102,3 +102,12 @@ def test_a_raster_in_another_system_is_refused(tmp_path: Path) -> None:
     (tmp_path / "n.prj").write_text(CRS.from_epsg(32633).to_wkt("WKT1_ESRI"))
     with pytest.raises(ServiceError, match=r"\[roughness\] raster 'n.asc' is not in 'EPSG:32632'"):
         load_case(tmp_path)
+
+
+def test_a_raster_beside_the_terrain_is_refused(tmp_path: Path) -> None:
+    write_case(tmp_path, DRY + '\n[initial]\ndepth = "d.npz"\n')
+    np.savez(tmp_path / "d.npz", depth=np.ones((ROWS, COLS)), x0=0.0, y0=0.0, dx=10.0)
+
+    message = r"depth is 'd.npz'; it covers .* \[0.0, 0.0, 400.0, 240.0\] m and says nothing on the terrain"
+    with pytest.raises(CaseError, match=message):
+        load_case(tmp_path)
