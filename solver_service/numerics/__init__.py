@@ -1,6 +1,7 @@
 """The shallow-water solver: arrays and numbers in, arrays and numbers out; no files, no network."""
 
 from solver_service.errors import DeviceError, ModelError, SolverBlowUp
+from solver_service.numerics.allocation import Allocation, MemoryOptions, allocation_table, device_bytes
 from solver_service.numerics.bed_change import BedChange
 from solver_service.numerics.breach import Breach, BreachState
 from solver_service.numerics.budget import VolumeBudget
@@ -18,6 +19,7 @@ from solver_service.numerics.solver import ShallowWaterSolver
 from solver_service.numerics.structures import Culvert, Pump, Structure, Weir
 
 __all__ = [
+    "Allocation",
     "BedChange",
     "Breach",
     "BreachState",
@@ -29,6 +31,7 @@ __all__ = [
     "GaugeSeries",
     "Infiltration",
     "Maxima",
+    "MemoryOptions",
     "ModelError",
     "Pump",
     "Rain",
@@ -40,6 +43,8 @@ __all__ = [
     "Structure",
     "VolumeBudget",
     "Weir",
+    "allocation_table",
+    "device_bytes",
     "device_names",
     "pick_device",
     "warm_kernels",
