@@ -56,6 +56,17 @@ class FrameEncoder:
         self._key_index = 0
         self._key_q: UInt16Array = np.zeros((0, 0), dtype=np.uint16)
 
+    def go_on(self, key: Frame) -> None:
+        """Lean the next frames on a key frame that was packed before, as if this encoder had packed it.
+
+        Raises:
+            FrameError: when it is no key frame, or does not fit the layout.
+        """
+        if not key.is_key:
+            raise FrameError(f"Frame {key.index} of run {key.run!r} is no key frame.")
+        water = FrameDecoder(self.layout).decode(key)
+        self._run, self._key_index, self._key_q, self.scale = key.run, key.index, water.q, key.scale
+
     def choose_scale(self, h_max: float) -> float:
         """Scale [m] for the next frame: the group's while h_max [m] fits, else a coarser one."""
         return self.scale if h_max <= Q_MAX * self.scale else choose_depth_scale(h_max)

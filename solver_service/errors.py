@@ -7,6 +7,7 @@
         TerrainError        a terrain file cannot be read or is not what it must be
         CaseError           a case file or one of the files it names is not valid
         StoreError          the data folder cannot be read or written
+            StoreFull       there is no room in the data folder
         RunError            a run cannot do what was asked of it
         ServeError          the service cannot listen
 
@@ -63,6 +64,10 @@ class CaseError(ServiceError):
 
 class StoreError(ServiceError):
     """The data folder cannot be read or written."""
+
+
+class StoreFull(StoreError):
+    """There is no room in the data folder: the disk, a quota or the budget of the service is full."""
 
 
 class RunError(ServiceError):

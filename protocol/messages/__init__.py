@@ -4,26 +4,37 @@ from __future__ import annotations
 
 from protocol.fields import Command, Message, WireStruct
 from protocol.messages.cases import CaseList, CaseSummary, ListCases
+from protocol.messages.control import (
+    ControlChanged,
+    ControlRequested,
+    ReleaseControl,
+    TakeControl,
+)
 from protocol.messages.edits import AppendEdit, EditsChanged, RedoEdit, UndoEdit
 from protocol.messages.flow import Credit, Seek, Subscribe, SubscriptionMode, Unsubscribe
 from protocol.messages.frames import Frame, FramePart
 from protocol.messages.handshake import Hello, ResumePoint, Welcome, WireLimits
 from protocol.messages.runs import (
+    DeleteRun,
     GridInfo,
     LineageEntry,
     ListRuns,
     PauseRun,
+    PinRun,
     Recalculate,
+    RenameRun,
     ResumeRun,
     RunBranched,
     RunChanged,
     RunInfo,
     RunList,
+    RunRemoved,
     RunStatus,
     StartRun,
     StopRun,
+    UnpinRun,
 )
-from protocol.messages.status import Ack, Error, Notice, Progress
+from protocol.messages.status import Ack, Error, Notice, Progress, WaterBudget
 from protocol.messages.terrain import GetTerrain, Terrain
 
 ClientMessage = (
@@ -43,6 +54,12 @@ ClientMessage = (
     | UndoEdit
     | RedoEdit
     | Recalculate
+    | RenameRun
+    | PinRun
+    | UnpinRun
+    | DeleteRun
+    | TakeControl
+    | ReleaseControl
 )
 
 ServerMessage = (
@@ -59,6 +76,10 @@ ServerMessage = (
     | FramePart
     | Progress
     | Notice
+    | RunRemoved
+    | ControlChanged
+    | ControlRequested
+    | WaterBudget
 )
 
 __all__ = [
@@ -68,7 +89,10 @@ __all__ = [
     "CaseSummary",
     "ClientMessage",
     "Command",
+    "ControlChanged",
+    "ControlRequested",
     "Credit",
+    "DeleteRun",
     "EditsChanged",
     "Error",
     "Frame",
@@ -82,15 +106,19 @@ __all__ = [
     "Message",
     "Notice",
     "PauseRun",
+    "PinRun",
     "Progress",
     "Recalculate",
     "RedoEdit",
+    "ReleaseControl",
+    "RenameRun",
     "ResumePoint",
     "ResumeRun",
     "RunBranched",
     "RunChanged",
     "RunInfo",
     "RunList",
+    "RunRemoved",
     "RunStatus",
     "Seek",
     "ServerMessage",
@@ -98,9 +126,12 @@ __all__ = [
     "StopRun",
     "Subscribe",
     "SubscriptionMode",
+    "TakeControl",
     "Terrain",
     "UndoEdit",
+    "UnpinRun",
     "Unsubscribe",
+    "WaterBudget",
     "Welcome",
     "WireLimits",
     "WireStruct",

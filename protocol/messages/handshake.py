@@ -20,11 +20,13 @@ class ResumePoint(WireStruct, frozen=True):
         run: the run it watched.
         last_index: last frame index it received, or -1.
         revision: revision of the edit list it knew.
+        session: id of the connection that was lost; the control of its runs passes to the new one.
     """
 
     run: Identifier
     last_index: Annotated[int, Meta(ge=-1, le=2**31 - 1)]
     revision: Revision
+    session: Identifier | None = None
 
 
 class Hello(Message, frozen=True):

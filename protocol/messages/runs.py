@@ -80,6 +80,48 @@ class StopRun(Command, frozen=True):
     run: Identifier
 
 
+class RenameRun(Command, frozen=True):
+    """Give a run a name for people.
+
+    Attributes:
+        run: id of the run.
+        label: the name; an empty one takes it away.
+    """
+
+    run: Identifier
+    label: Name
+
+
+class PinRun(Command, frozen=True):
+    """Keep a run whatever the budget of the store.
+
+    Attributes:
+        run: id of the run.
+    """
+
+    run: Identifier
+
+
+class UnpinRun(Command, frozen=True):
+    """Let a run go again when the store needs room.
+
+    Attributes:
+        run: id of the run.
+    """
+
+    run: Identifier
+
+
+class DeleteRun(Command, frozen=True):
+    """Forget a run and its frames; refused while it computes, is pinned, or others branched from it.
+
+    Attributes:
+        run: id of the run.
+    """
+
+    run: Identifier
+
+
 class Recalculate(Command, frozen=True):
     """Branch a run at a frame with the working list of edits as its terrain.
 
@@ -192,6 +234,8 @@ class RunInfo(WireStruct, frozen=True):
         source: where the data comes from.
         licence: licence of the data.
         message: why it failed or stopped.
+        label: the name that people gave it.
+        pinned: whether it is kept whatever the budget of the store.
     """
 
     run: Identifier
@@ -213,6 +257,8 @@ class RunInfo(WireStruct, frozen=True):
     source: Text = ""
     licence: Text = ""
     message: Text = ""
+    label: Name = ""
+    pinned: bool = False
 
 
 class RunList(Message, frozen=True):
@@ -247,3 +293,13 @@ class RunBranched(Message, frozen=True):
 
     parent: Identifier
     child: RunInfo
+
+
+class RunRemoved(Message, frozen=True):
+    """A run is deleted; its frames are gone.
+
+    Attributes:
+        run: id of the run.
+    """
+
+    run: Identifier

@@ -61,7 +61,8 @@ class Progress(Message, frozen=True):
         cell_steps_per_s: cells times steps over wall time [1/s].
         volume_error_relative: water volume error over the volume.
         wet_cells: cells with water.
-        limiting_cell: row and column of the cell that limits dt, if known.
+        limiting_cell: row and column of the cell that limited dt at the last frame, if known.
+        eta_s: wall time until the run is finished at the pace of this stretch [s], if known.
     """
 
     run: Identifier
@@ -74,6 +75,52 @@ class Progress(Message, frozen=True):
     volume_error_relative: float
     wet_cells: Count
     limiting_cell: tuple[FrameIndex, FrameIndex] | None = None
+    eta_s: NotNegative | None = None
+
+
+Volumes = Annotated[dict[Name, float], Meta(max_length=4096)]
+
+
+class WaterBudget(Message, frozen=True):
+    """Where the water of a run came from and went, since its beginning [m3]; follows a frame.
+
+    error = stored - (initial + inflow + rain - infiltration - outflow - edits)
+
+    Attributes:
+        run: id of the run.
+        time: simulated time [s].
+        initial: water at the beginning.
+        stored: water now.
+        inflow: brought by sources, edges and structures.
+        outflow: left through edges and structures.
+        rain: brought by rain.
+        infiltration: gone into the ground.
+        edits: cut by raising the bed under water.
+        error: what nothing explains.
+        error_relative: the error in units of all the water there ever was [1].
+        sources: brought by each source.
+        edges_in: come in through each edge.
+        edges_out: gone out through each edge.
+        structures: taken out of the domain by each structure; negative for what it brought.
+        moved: moved within the domain by each structure.
+    """
+
+    run: Identifier
+    time: NotNegative
+    initial: float
+    stored: float
+    inflow: float
+    outflow: float
+    rain: float
+    infiltration: float
+    edits: float
+    error: float
+    error_relative: float
+    sources: Volumes = field(default_factory=dict)
+    edges_in: Volumes = field(default_factory=dict)
+    edges_out: Volumes = field(default_factory=dict)
+    structures: Volumes = field(default_factory=dict)
+    moved: Volumes = field(default_factory=dict)
 
 
 class Notice(Message, frozen=True):

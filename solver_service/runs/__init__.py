@@ -1,8 +1,9 @@
 """Runs: the tree of runs, the worker processes that compute them, and the commands that change them."""
 
 from solver_service.runs.audience import Listener
+from solver_service.runs.controllers import Session
 from solver_service.runs.registry import RunRegistry
 from solver_service.runs.run_status import RunStatus
 from solver_service.runs.run_tree import Run
 
-__all__ = ["Listener", "Run", "RunRegistry", "RunStatus"]
+__all__ = ["Listener", "Run", "RunRegistry", "RunStatus", "Session"]

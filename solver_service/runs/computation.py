@@ -91,6 +91,10 @@ class Computation:
         since = self._advancing_since
         return self._wall_s + (clock.perf_counter() - since if since is not None else 0.0)
 
+    def depth_max(self) -> float:
+        """Greatest depth of this moment [m]."""
+        return float(self.solver.depth().max(initial=0.0))
+
     def quantise(self, scale: float) -> tuple[NDArray[np.uint16], NDArray[np.uint8]]:
         """Quantised depth and block states of this moment, as arrays of their own."""
         return self.solver.quantise(scale, self.depth_wet)

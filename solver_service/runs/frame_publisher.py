@@ -2,11 +2,13 @@
 
 The solver hands over (q, states) and goes on; it waits only when the disk is so slow that the queue is full.
 When the store fails (a full disk) nothing is lost: the frame stays in hand, the run is told to pause, and
-`retry` tries again.
+`retry` tries again. A run that is taken up leans on the key frame that is open in its store, so that its
+bytes are those of a run that nothing disturbed.
 """
 
 from __future__ import annotations
 
+import logging
 import queue
 import threading
 import time as clock
@@ -16,10 +18,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from protocol import BlockLayout, FrameEncoder, peek_frame
+from protocol import BlockLayout, Frame, FrameEncoder, ProtocolError, peek_frame
 from solver_service.errors import StoreError
+from solver_service.runs.frame_grouping import open_key_frame
 from solver_service.runs.worker_messages import FrameStored
-from solver_service.store import DataFolder, FrameWriter, RunDatabase
+from solver_service.store import DataFolder, FrameReader, FrameWriter, RunDatabase
+
+LOG = logging.getLogger(__name__)
 
 QUEUE_BYTES = 128 * 1024 * 1024
 """Frames that may wait for the disk; a full queue makes the solver wait."""
@@ -56,7 +61,7 @@ class FramePublisher:
         folder: DataFolder,
         epoch: int,
         report: Callable[[FrameStored], None],
-        trouble: Callable[[str, str], None],
+        trouble: Callable[[str, StoreError], None],
     ) -> None:
         """Start the thread.
 
@@ -64,15 +69,19 @@ class FramePublisher:
             folder: the data folder.
             epoch: epoch of the service.
             report: called with each stored frame.
-            trouble: called with run and sentence when a frame cannot be stored.
+            trouble: called with the run and what was raised when a frame cannot be stored.
         """
         self._folder = folder
         self._epoch = epoch
+        self._reader = FrameReader(folder)
         self._report = report
         self._trouble = trouble
         self._space = threading.Condition()
         self._waiting_bytes = 0
-        self._queue: queue.Queue[tuple[QuantisedFrame, float, float] | None] = queue.Queue()
+        self._waiting = 0
+        self._in_trouble = False
+        self._queue: queue.Queue[tuple[QuantisedFrame, float, float] | Callable[[], None] | None]
+        self._queue = queue.Queue()
         self._retry = threading.Event()
         self._closing = False
         self._encoder: FrameEncoder | None = None
@@ -89,18 +98,27 @@ class FramePublisher:
         """
         begun = clock.perf_counter()
         with self._space:
-            self._space.wait_for(lambda: self._waiting_bytes < QUEUE_BYTES)
+            self._space.wait_for(lambda: self._waiting_bytes < QUEUE_BYTES or self._in_trouble)
             self._waiting_bytes += frame.q.nbytes
+            self._waiting += 1
         waited = clock.perf_counter() - begun
         self._queue.put((frame, begun, waited))
         return waited
 
-    def flush(self) -> None:
-        """Wait until everything handed over is stored, or given up because of `close`."""
-        self._queue.join()
+    def settle(self) -> bool:
+        """Wait until everything handed over is stored; False when a frame cannot be stored for now."""
+        with self._space:
+            self._space.wait_for(lambda: not self._waiting or self._in_trouble)
+            return not self._waiting
+
+    def then(self, call: Callable[[], None]) -> None:
+        """Have something called once everything handed over so far is stored."""
+        self._queue.put(call)
 
     def retry(self) -> None:
         """Try again to store the frame that could not be stored."""
+        with self._space:
+            self._in_trouble = False
         self._retry.set()
 
     def close(self) -> None:
@@ -113,12 +131,14 @@ class FramePublisher:
     def _work(self) -> None:
         database = RunDatabase(self._folder.database, self._epoch)
         while (job := self._queue.get()) is not None:
+            if callable(job):
+                job()
+                continue
             self._store(*job, database)
             with self._space:
                 self._waiting_bytes -= job[0].q.nbytes
-                self._space.notify()
-            self._queue.task_done()
-        self._queue.task_done()
+                self._waiting -= 1
+                self._space.notify_all()
         if self._writer is not None:
             self._writer.close()
         database.close()
@@ -141,7 +161,10 @@ class FramePublisher:
                 self._retry.clear()
                 if self._is_closing():
                     return
-                self._trouble(frame.run, str(error))
+                with self._space:
+                    self._in_trouble = True
+                    self._space.notify_all()
+                self._trouble(frame.run, error)
                 self._retry.wait()
                 if self._is_closing():
                     return
@@ -153,13 +176,23 @@ class FramePublisher:
         return self._closing
 
     def _tools(self, frame: QuantisedFrame, database: RunDatabase) -> tuple[FrameEncoder, FrameWriter]:
-        """Encoder and writer; a run that is taken up begins with a key frame in its own segment."""
+        """Encoder and writer; a run that is taken up goes on in a segment of its own."""
         wanted = (frame.run, frame.q.shape)
         if self._encoder is None or self._writer is None or self._encoder_of != wanted:
             if self._writer is not None:
                 self._writer.close()
             nrows, ncols = frame.q.shape
             self._encoder = FrameEncoder(BlockLayout(nrows, ncols))
+            key = self._open_key(frame.run, database)
+            if key is not None:
+                self._encoder.go_on(key)
             self._writer = FrameWriter(self._folder, database, frame.run)
             self._encoder_of = wanted
         return self._encoder, self._writer
+
+    def _open_key(self, run: str, database: RunDatabase) -> Frame | None:
+        try:
+            return open_key_frame(database, self._reader, run)
+        except (StoreError, ProtocolError) as error:
+            LOG.warning("run %s goes on with a new key frame: %s", run, error)
+            return None

@@ -10,7 +10,11 @@ from solver_service.runs.worker_messages import Command, Quit
 
 
 class Inbox:
-    """Reads the pipe of a worker; the end of the pipe (the service is gone) counts as Quit."""
+    """Reads the pipe of a worker; the end of the pipe (the service is gone) counts as Quit.
+
+    Attributes:
+        quitting: whether Quit has come, although commands before it may still wait.
+    """
 
     def __init__(self, connection: Connection) -> None:
         """Start reading.
@@ -20,6 +24,7 @@ class Inbox:
         """
         self._connection = connection
         self._commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self.quitting = False
         threading.Thread(target=self._read, name="worker-inbox", daemon=True).start()
 
     @property
@@ -37,6 +42,9 @@ class Inbox:
     def _read(self) -> None:
         try:
             while True:
-                self._commands.put(self._connection.recv())
+                command = self._connection.recv()
+                self.quitting = isinstance(command, Quit)
+                self._commands.put(command)
         except (EOFError, OSError):
+            self.quitting = True
             self._commands.put(Quit())

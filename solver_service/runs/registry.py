@@ -6,38 +6,45 @@ Lives on one event loop. What a command acknowledges is in the store before the 
 from __future__ import annotations
 
 import asyncio
+import logging
 import secrets
+from collections.abc import Coroutine
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from protocol import CaseSummary, Edit, EditsChanged, RunBranched, RunChanged, RunInfo, check_edit
-from solver_service.errors import RunError
+from protocol import CaseSummary, RunBranched, RunChanged, RunInfo, RunRemoved
+from solver_service.errors import RunError, StoreError
 from solver_service.runs.audience import Audience
 from solver_service.runs.case_catalogue import CaseCatalogue
-from solver_service.runs.case_facts import CaseFacts
-from solver_service.runs.edit_blobs import pack_edit, pack_edits
+from solver_service.runs.controllers import Controllers
+from solver_service.runs.edit_blobs import pack_edits
+from solver_service.runs.edit_desk import EditDesk
+from solver_service.runs.restart_policy import RestartPolicy
 from solver_service.runs.run_reports import RunReports
-from solver_service.runs.run_status import ACTIVE, RunStatus, check_move
-from solver_service.runs.run_tree import Run, RunTree, replayed_log
+from solver_service.runs.run_status import ACTIVE, Move, RunStatus, check_move
+from solver_service.runs.run_tree import Run, RunTree
 from solver_service.runs.store_thread import StoreThread
+from solver_service.runs.supervisor import Supervisor
 from solver_service.runs.worker import Worker
-from solver_service.runs.worker_messages import Begin, Pause, WorkerSettings
+from solver_service.runs.worker_messages import Pause, WorkerSettings
 from solver_service.runs.worker_pool import WorkerPool
 from solver_service.store import (
     DataFolder,
-    EditEvent,
-    EditEventKind,
     FrameReader,
     FrameRecord,
     RunDatabase,
     RunRecord,
     load_bed,
+    mend_run,
+    remove_run_files,
 )
-from solver_service.store.checkpoint_store import remove_orphans
-from solver_service.store.frame_files import recover_segments
 
 INTERRUPTED = "the service ended while it was computed; resume goes on from the last checkpoint"
+LOG = logging.getLogger(__name__)
+
 SAVE_TIMEOUT_S = 10.0
+CLOSE_TIMEOUT_S = 1.0
 
 
 class RunRegistry:
@@ -46,7 +53,9 @@ class RunRegistry:
     Attributes:
         audience: who is told of changes.
         tree: all runs.
-        pool: the worker processes.
+        edits: their working lists.
+        controllers: who may change them.
+        supervisor: their workers.
     """
 
     def __init__(
@@ -58,6 +67,8 @@ class RunRegistry:
         ring_bytes: int = 1 << 30,
         checkpoint_interval_s: float = 60.0,
         spare_workers: int = 1,
+        restart_attempts: int = 3,
+        restart_within_s: float = 600.0,
     ) -> None:
         """Open the store; `open` then begins the work.
 
@@ -69,25 +80,33 @@ class RunRegistry:
             ring_bytes: memory of a worker for recent states [bytes].
             checkpoint_interval_s: wall time between checkpoints [s].
             spare_workers: warm workers that stand by.
+            restart_attempts: how often a run whose worker died is taken up again by itself.
+            restart_within_s: the time in which these attempts count [s].
 
         Raises:
             StoreError: the folder is in use or cannot be used.
             CaseError: an offered case cannot be read.
         """
         self._device = device
+        self._catalogue = CaseCatalogue(cases)
         self._folder = DataFolder(data_dir)
         self._folder.lock()
-        self._catalogue = CaseCatalogue(cases)
         self._store = StoreThread(self._folder)
         self._reader = FrameReader(self._folder)
         self._worker_settings = WorkerSettings(
             data_dir, 0, ring_bytes, checkpoint_interval_s, threads, device
         )
         self._spare_workers = spare_workers
+        self._commands: set[asyncio.Task[None]] = set()
         self.audience = Audience()
         self.tree = RunTree()
         self.reports = RunReports(self.tree, self._store, self.audience)
-        self.pool: WorkerPool
+        self.controllers = Controllers(self.audience.announce)
+        self.edits = EditDesk(self.tree, self._store, self.audience)
+        policy = RestartPolicy(restart_attempts, restart_within_s)
+        self.supervisor = Supervisor(
+            self.tree, self._store, self._folder, self._catalogue, self.reports, policy
+        )
 
     async def open(self) -> None:
         """Take over the store: fence off earlier services, mend what a crash left, warm a worker."""
@@ -97,11 +116,11 @@ class RunRegistry:
         await self._store.call(RunDatabase.interrupt_active, active, RunStatus.PAUSED.value, INTERRUPTED)
         for record in await self._store.call(RunDatabase.runs):
             self.tree.add(await self._store.call(_load_run, self._folder, record))
-        self.pool = WorkerPool(
+        self.supervisor.pool = WorkerPool(
             replace(self._worker_settings, epoch=epoch),
             self._spare_workers,
-            self.reports.hear,
-            self.reports.lost,
+            self.supervisor.hear,
+            self.supervisor.lost,
             lambda name: name in self.tree and self.tree.get(name).status not in ACTIVE,
         )
         self.pool.start_spares()
@@ -109,12 +128,26 @@ class RunRegistry:
     async def close(self) -> None:
         """Pause what computes, end the workers, close the store."""
         computing = [run for run in self.tree if run.status in ACTIVE]
-        await self.pool.close()
+        await self.supervisor.close()
+        if self._commands:
+            await asyncio.wait(self._commands, timeout=CLOSE_TIMEOUT_S)
         for run in computing:
             if run.status in ACTIVE:
-                self.reports.move(run, RunStatus.PAUSED, "the service was ended; resume goes on from here")
+                self.reports.move(run, Move.PAUSE, "the service was ended; resume goes on from here")
         self._store.close()
         self._folder.unlock()
+
+    async def carry_through(self, command: Coroutine[Any, Any, None]) -> None:
+        """Carry a command to its end, also when whoever waits for it is cancelled."""
+        task = asyncio.get_running_loop().create_task(command)
+        self._commands.add(task)
+        task.add_done_callback(self._command_done)
+        await asyncio.shield(task)
+
+    def _command_done(self, task: asyncio.Task[None]) -> None:
+        self._commands.discard(task)
+        if not task.cancelled() and (error := task.exception()) is not None:
+            LOG.debug("a command was refused: %s", error)  # whoever still waits for it is told
 
     # what there is
 
@@ -127,18 +160,28 @@ class RunRegistry:
         """All runs, newest first."""
         return tuple(self.tree.info(run) for run in reversed(list(self.tree)))
 
+    @property
+    def pool(self) -> WorkerPool:
+        """The worker processes."""
+        return self.supervisor.pool
+
     async def read_frame(self, record: FrameRecord) -> bytes:
-        """The packed bytes of a frame, read away from the event loop."""
-        return await asyncio.to_thread(self._reader.read, record)
+        """The packed bytes of a frame, read away from the event loop.
+
+        Raises:
+            StoreError: they are missing or damaged.
+        """
+        try:
+            return await asyncio.to_thread(self._reader.read, record)
+        except StoreError:  # it may have moved to another segment since the row was read
+            row = await self._store.call(RunDatabase.frame, record.run, record.index)
+            if row is None or row == record:
+                raise
+            return await asyncio.to_thread(self._reader.read, row)
 
     async def read_bed(self, name: str) -> bytes:
         """The packed base bed of a run."""
         return await asyncio.to_thread(load_bed, self._folder, self.tree.get(name).record.case_fingerprint)
-
-    def edits_changed(self, name: str) -> EditsChanged:
-        """The working list of a run as it is told to viewers."""
-        log = self.tree.get(name).edit_log
-        return EditsChanged(name, log.revision, log.edits, log.can_undo, log.can_redo)
 
     # run control
 
@@ -183,8 +226,9 @@ class RunRegistry:
         except BaseException:
             self.pool.release(worker)
             raise
-        run = _fresh(record, ())
-        self._begin(run, worker, paused=paused)
+        run = Run.of(record, ())
+        self.tree.add(run)
+        self.supervisor.begin(run, worker, paused=paused)
         self.audience.announce(RunChanged(self.tree.info(run)))
         return run
 
@@ -192,66 +236,73 @@ class RunRegistry:
         """Stop computing a run until `resume`."""
         run = self.tree.get(name)
         async with run.lock:
-            self._pause(run)
+            self.reports.move(run, Move.PAUSE)
+            if run.worker is not None and run.worker.run == name:
+                run.worker.send(Pause(name))
 
     async def resume(self, name: str) -> None:
         """Go on with a paused or failed run, from where it stood or from its last checkpoint."""
         run = self.tree.get(name)
         async with run.lock:
-            check_move(name, run.status, RunStatus.STARTING)
-            worker = run.worker
-            if worker is None or worker.is_dead or worker.run != name:
-                source = self._catalogue.source(run.record.case)
-                worker = await self.pool.take(name, source, run.record.device)
-            self.reports.move(run, RunStatus.STARTING)
-            self._begin(run, worker)
+            check_move(name, run.status, Move.RESUME)
+            worker = await self.supervisor.worker_for(run)
+            self.supervisor.policy.forget(name)
+            try:
+                self.reports.move(run, Move.RESUME)
+            except RunError:  # its rows said that it is finished
+                self.pool.release(worker)
+                raise
+            self.supervisor.begin(run, worker)
 
     async def stop(self, name: str) -> None:
         """End a run for good; its frames stay."""
         run = self.tree.get(name)
         async with run.lock:
-            self.reports.move(run, RunStatus.STOPPED)
-            if run.worker is not None and run.worker.run == name:
-                run.worker.send(Pause(name, final=True))
-                self.pool.release(run.worker)
-            run.worker = None
+            self.reports.move(run, Move.STOP)
+            self._free_worker(run)
 
-    # edits
+    async def rename(self, name: str, label: str) -> None:
+        """Give a run a name for people; an empty one takes it away."""
+        await self._mark(name, Move.RENAME, label=label)
 
-    async def append_edit(self, name: str, edit: Edit) -> int:
-        """Add an edit to the working list; gives the new revision.
+    async def pin(self, name: str, pinned: bool = True) -> None:
+        """Keep a run whatever the budget of the store, or no longer."""
+        await self._mark(name, Move.PIN if pinned else Move.UNPIN, pinned=pinned)
+
+    async def delete(self, name: str) -> None:
+        """Forget a run and free its room.
 
         Raises:
-            EditError: the edit does not fit the terrain or the list.
+            RunError: it computes, is pinned, or other runs branched from it.
         """
         run = self.tree.get(name)
-        check_edit(edit, run.facts.grid.geometry)
-        return await self._change_edits(run, EditEventKind.APPEND, edit)
-
-    async def undo_edit(self, name: str) -> int:
-        """Take the last edit off the working list; gives the new revision."""
-        return await self._change_edits(self.tree.get(name), EditEventKind.UNDO)
-
-    async def redo_edit(self, name: str) -> int:
-        """Put the edit that was last undone back; gives the new revision."""
-        return await self._change_edits(self.tree.get(name), EditEventKind.REDO)
-
-    async def _change_edits(self, run: Run, kind: EditEventKind, edit: Edit | None = None) -> int:
         async with run.lock:
-            events = await self._store.call(RunDatabase.edit_events, run.run)
-            log = replayed_log(events)  # the change is tried on a copy: it counts once it is stored
-            if kind is EditEventKind.APPEND and edit is not None:
-                log.append(edit)
-            elif kind is EditEventKind.UNDO:
-                log.undo()
-            else:
-                log.redo()
-            packed = pack_edit(edit) if edit is not None else b""
-            event = EditEvent(run.run, len(events) + 1, kind, packed)
-            await self._store.call(RunDatabase.append_edit_event, event)
-            run.edit_log = log
-        self.audience.announce(self.edits_changed(run.run))
-        return log.revision
+            check_move(name, run.status, Move.DELETE)
+            if run.record.pinned:
+                raise RunError(f"run {name} is pinned and cannot be deleted; unpin it first")
+            children = [child.run for child in self.tree.children(name)]
+            if children:
+                raise RunError(
+                    f"run {name} holds the past of {', '.join(children)} and cannot be deleted; "
+                    "delete them first"
+                )
+            self._free_worker(run)
+            await self.supervisor.settle(run)
+            await self._store.call(RunDatabase.delete_run, name)
+            self.tree.remove(name)
+            self.supervisor.policy.forget(name)
+            self.controllers.forget(name)
+            await asyncio.to_thread(remove_run_files, self._folder, name)
+        self.audience.announce(RunRemoved(name))
+
+    async def _mark(self, name: str, move: Move, **fields: str | bool) -> None:
+        run = self.tree.get(name)
+        async with run.lock:
+            check_move(name, run.status, move)
+            record = replace(run.record, **fields)  # type: ignore[arg-type]
+            await self._store.call(RunDatabase.mark_run, name, record.label, record.pinned)
+            run.record = record
+        self.audience.announce(RunChanged(self.tree.info(run)))
 
     # recalculation
 
@@ -273,6 +324,7 @@ class RunRegistry:
         """
         run = self.tree.get(name)
         async with run.lock:
+            check_move(name, run.status, Move.RECALCULATE)
             parent = self.tree.branch_parent(name, index)
             if self.tree.frame(parent.run, index) is None:
                 raise RunError(
@@ -291,6 +343,8 @@ class RunRegistry:
                 branch_index=index,
                 status=RunStatus.STARTING.value,
                 status_reason="",
+                label="",
+                pinned=False,
                 bed_revision=revision,
                 bed_edits=pack_edits(run.edit_log.edits),
             )
@@ -301,10 +355,11 @@ class RunRegistry:
             except BaseException:
                 self.pool.release(worker)
                 raise
-            child = _fresh(record, events)
-            self._begin(child, worker)
+            child = Run.of(record, events)
+            self.tree.add(child)
+            self.supervisor.begin(child, worker)
             if not keep_parent and run.status in ACTIVE:
-                self.reports.move(run, RunStatus.PAUSED)
+                self.reports.move(run, Move.PAUSE)
         info = self.tree.info(child)
         self.audience.announce(RunChanged(info))
         self.audience.announce(RunBranched(parent.run, info))
@@ -322,46 +377,20 @@ class RunRegistry:
             await asyncio.wait_for(worker.save_state(parent.run, child.branch_index), SAVE_TIMEOUT_S)
         return await self.pool.take(child.run, self._catalogue.source(child.case), child.device)
 
-    def _pause(self, run: Run) -> None:
-        self.reports.move(run, RunStatus.PAUSED)
+    def _free_worker(self, run: Run) -> None:
         if run.worker is not None and run.worker.run == run.run:
-            run.worker.send(Pause(run.run))
-
-    def _begin(self, run: Run, worker: Worker, paused: bool = False) -> None:
-        """Let a worker compute a run from now on."""
-        if run.run not in self.tree:
-            self.tree.add(run)
-        run.worker, worker.run = worker, run.run
-        source = self._catalogue.source(run.record.case)
-        worker.case = (source, run.record.device)
-        worker.send(
-            Begin(
-                run=run.run,
-                case=source,
-                case_fingerprint=run.record.case_fingerprint,
-                device=run.record.device,
-                legs=self.tree.legs(run.run),
-                output_interval=run.record.output_interval,
-                last_index=run.last_index,
-                stored_frames=run.frame_count,
-                paused=paused,
-            )
-        )
+            run.worker.send(Pause(run.run, final=True))
+            self.pool.release(run.worker)
+        run.worker = None
 
 
 def _new_id() -> str:
     return f"r{secrets.token_hex(6)}"
 
 
-def _fresh(record: RunRecord, events: tuple[EditEvent, ...]) -> Run:
-    facts = CaseFacts.unpack(record.facts)
-    return Run(record, facts, replayed_log(events), RunStatus(record.status), record.status_reason, [])
-
-
 def _load_run(database: RunDatabase, folder: DataFolder, record: RunRecord) -> Run:
     """A run from the store, its files mended."""
-    recover_segments(folder, database, record.run)
-    remove_orphans(folder, database, record.run)
-    run = _fresh(record, tuple(database.edit_events(record.run)))
+    mend_run(folder, database, record.run)
+    run = Run.of(record, tuple(database.edit_events(record.run)))
     run.frames = database.frames(record.run)
     return run

@@ -2,29 +2,36 @@
 
 A run is brought to where it goes on along its lineage: the newest state at hand (memory, disk, else time 0),
 exact replay to the next branch point, the bed of the next leg, and so on until its own leg; from there every
-output time becomes a frame. Frames that are stored already are computed again but not stored again.
+output time becomes a frame. Frames that are stored already are computed again but not stored again. A run is
+never left without its first frame.
 """
 
 from __future__ import annotations
 
 import gc
+import logging
 import time as clock
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
-from protocol import choose_depth_scale, limits
-from solver_service.errors import ServiceError
+from protocol import ProtocolError
+from solver_service.errors import ServiceError, StoreError, StoreFull
 from solver_service.numerics import pick_device
 from solver_service.runs.computation import Computation
+from solver_service.runs.course import Course, next_index_after
+from solver_service.runs.frame_grouping import FrameGrouping, grouping_after, open_key_frame
 from solver_service.runs.frame_publisher import FramePublisher, QuantisedFrame
 from solver_service.runs.inbox import Inbox
 from solver_service.runs.state_keeper import StateKeeper
+from solver_service.runs.worker_failure import failure_of
 from solver_service.runs.worker_messages import (
     Begin,
+    BudgetReport,
     CaseLoaded,
     CaseRefused,
     Command,
     Failed,
+    Left,
     LoadCase,
     Pause,
     Paused,
@@ -37,13 +44,21 @@ from solver_service.runs.worker_messages import (
     StateSaved,
     WorkerSettings,
 )
-from solver_service.store import CheckpointStore, DataFolder, RunDatabase, StoredState, save_bed
+from solver_service.store import (
+    CheckpointStore,
+    DataFolder,
+    FrameReader,
+    RunDatabase,
+    StoredState,
+    save_bed,
+)
+
+LOG = logging.getLogger(__name__)
 
 PROGRESS_INTERVAL_S = 0.25
+BUDGET_INTERVAL_S = 1.0
 REMEMBER_INTERVAL_S = 0.25
 """Wall time between states kept in memory: what a Recalculate may have to compute again."""
-Q_FULL = 65535
-"""A depth at the end of its scale: the frame is quantised again on a coarser one."""
 
 
 class RunLoop:
@@ -63,10 +78,11 @@ class RunLoop:
         self._folder = DataFolder(settings.data_dir)
         self._database = RunDatabase(self._folder.database, settings.epoch)
         self._checkpoints = CheckpointStore(self._folder, self._database)
+        self._reader = FrameReader(self._folder)
         self._publisher = FramePublisher(self._folder, settings.epoch, report, self._halt)
         self._keeper = StateKeeper(self._folder, settings.epoch, settings.ring_bytes, report)
         self._computation: Computation | None = None
-        self._course: _Course | None = None
+        self._course: Course | None = None
         self._halted = False
 
     def serve(self) -> None:
@@ -82,8 +98,8 @@ class RunLoop:
                 else:
                     self._advance()
             except ServiceError as error:
-                self._fail(str(error))
-        self._leave()
+                self._fail(error)
+        self._leave(in_haste=True)
         self._publisher.close()
         self._keeper.close()
         self._database.close()
@@ -133,29 +149,46 @@ class RunLoop:
         self._publisher.retry()
         course = self._course
         if course is not None and course.begin.run == begin.run and self._computation is not None:
+            course.begin = replace(course.begin, paused=begin.paused, number=begin.number)
             course.computing = not course.finished
             self._report(Running(begin.run))
             return
         self._leave()
-        self._course = course = _Course(begin)
+        if not self._publisher.settle():
+            full = "frames of another run wait for room on the disk"
+            self._report(Paused(begin.run, full, lacks_room=True))
+            self._report(Left(begin.run, begin.number))
+            return
+        self._course = course = Course(begin)
         computation = self._load(begin.case, begin.device)
         if computation.fingerprint != begin.case_fingerprint:
             raise ServiceError(f"case {begin.case} has changed since run {begin.run} began; start a new run")
-        course.position, state = self._nearest_state(begin)
+        last = self._database.last_frame(begin.run)
+        course.stored_end = last.index + 1 if last is not None else begin.legs[-1].first_index
+        course.grouping = self._open_grouping(begin.run)
+        course.position, state = self._nearest_state(course)
         computation.restore(state)
         course.began_at = computation.solver.time
         course.wall_before = computation.elapsed_s
         course.steps_before = computation.solver.step_count
-        course.next_index = _next_index(begin, course.position, computation.solver.time)
+        course.next_index = next_index_after(course, computation.solver.time)
         course.computing = True
         self._report(Running(begin.run))
 
-    def _nearest_state(self, begin: Begin) -> tuple[int, StoredState | None]:
+    def _open_grouping(self, run: str) -> FrameGrouping:
+        try:
+            return grouping_after(open_key_frame(self._database, self._reader, run))
+        except (StoreError, ProtocolError) as error:
+            self._report(Remark(run, f"{error}; the next frame begins a group"))
+            return FrameGrouping()
+
+    def _nearest_state(self, course: Course) -> tuple[int, StoredState | None]:
         """The deepest leg of which a state is at hand, and the newest such state that is not too late."""
+        begin = course.begin
         for position in range(len(begin.legs) - 1, -1, -1):
             own = position == len(begin.legs) - 1
             until = (
-                begin.stored_frames if own else begin.legs[position + 1].first_index
+                course.stored_end if own else begin.legs[position + 1].first_index
             ) * begin.output_interval
             run = begin.legs[position].run
             state = self._keeper.ring.latest(run, until)
@@ -167,7 +200,7 @@ class RunLoop:
                 return position, state
         return 0, None
 
-    def _advance(self) -> None:
+    def _advance(self, should_stop: Callable[[], bool] | None = None) -> None:
         """Compute up to the next frame time, or until a command comes.
 
         A replay lands on every frame time too, as the first computation did: the time step is cut there.
@@ -177,40 +210,37 @@ class RunLoop:
         assert computation is not None
         begin = course.begin
         index = course.next_index
-        if not computation.advance_to(index * begin.output_interval, self._should_stop):
+        if not computation.advance_to(index * begin.output_interval, should_stop or self._should_stop):
             return
         while not course.is_own and begin.legs[course.position + 1].first_index == index:
+            # whoever branches here again, as people do who press Recalculate twice, finds the state at hand
+            past = begin.legs[course.position].run
+            if computation.solver.time not in self._keeper.ring.times(past):
+                self._keeper.remember(past, computation.state())
             course.position += 1
             computation.enter(begin.legs[course.position])
         course.next_index = index + 1
         if not course.is_own:
             return
-        if index >= begin.stored_frames:
+        if index >= course.stored_end:
             self._publish(course, computation, index)
+            course.stored_end = index + 1
         course.finished = index >= begin.last_index
         if course.finished or (begin.paused and index == begin.legs[-1].first_index):
             course.computing = False
         self._keep(course, computation)
-        course.volume_error = computation.solver.budget().error_relative
-        course.wet_cells = computation.solver.wet_cells
+        self._take_stock(course, computation)
         self._progress(course, computation)
         if begin.paused and not course.computing and not course.finished:
             self._report(Paused(begin.run))
 
-    def _publish(self, course: _Course, computation: Computation, index: int) -> None:
-        if index >= course.group_end:
-            course.scale = choose_depth_scale(float(computation.solver.depth().max(initial=0.0)))
-            course.group_end = index + limits.FRAME_GROUP
-        q, states = computation.quantise(course.scale)
-        if q.max(initial=0) == Q_FULL:
-            course.scale = choose_depth_scale(float(computation.solver.depth().max(initial=0.0)))
-            course.group_end = index + limits.FRAME_GROUP
-            q, states = computation.quantise(course.scale)
+    def _publish(self, course: Course, computation: Computation, index: int) -> None:
+        q, states, scale = course.grouping.quantise(index, computation.quantise, computation.depth_max)
         leg = course.begin.legs[-1]
-        frame = QuantisedFrame(leg.run, index, computation.solver.time, leg.revision, q, states, course.scale)
+        frame = QuantisedFrame(leg.run, index, computation.solver.time, leg.revision, q, states, scale)
         self._publisher.publish(frame)
 
-    def _keep(self, course: _Course, computation: Computation) -> None:
+    def _keep(self, course: Course, computation: Computation) -> None:
         """Remember the state of this frame, and write it to disk when that is due."""
         now = clock.perf_counter()
         due = course.checkpoint_at is None or now >= course.checkpoint_at or course.finished
@@ -230,20 +260,43 @@ class RunLoop:
             return
         if pause.final:
             self._course = None
+            self._let_go(course)
+            return
+        if course.computing and course.lacks_first_frame:
+            course.begin = replace(course.begin, paused=True)  # it pauses by itself at its first frame
             return
         if course.computing and self._computation is not None and course.is_own:
             self._keeper.checkpoint(pause.run, self._computation.state())
         course.computing = False
         self._report(Paused(pause.run))
 
-    def _leave(self) -> None:
+    def _leave(self, in_haste: bool = False) -> None:
         """Make sure that what is computed now can be taken up again elsewhere."""
         course, computation = self._course, self._computation
-        if course is not None and computation is not None and course.computing and course.is_own:
+        if course is None:
+            return
+        run = course.begin.run
+        if not in_haste:
+            while course.computing and course.lacks_first_frame and not self._hurry():
+                try:
+                    self._advance(self._hurry)
+                except ServiceError as error:
+                    self._fail(error)
+                    return
+        if computation is not None and course.computing and course.is_own:
             state = computation.state()
-            self._keeper.remember(course.begin.run, state)
-            self._keeper.checkpoint(course.begin.run, state)
+            self._keeper.remember(run, state)
+            self._keeper.checkpoint(run, state)
         self._course = None
+        self._let_go(course)
+
+    def _hurry(self) -> bool:
+        return self._inbox.quitting or self._halted
+
+    def _let_go(self, course: Course) -> None:
+        """Tell it once nothing of a run is on its way to the disk any more."""
+        left = Left(course.begin.run, course.begin.number)
+        self._publisher.then(lambda: self._keeper.then(lambda: self._report(left)))
 
     def _save_state(self, command: SaveState) -> None:
         course = self._course
@@ -256,19 +309,25 @@ class RunLoop:
         saved = StateSaved(command.run, command.index, True)
         self._keeper.checkpoint(command.run, state, lambda: self._report(saved))
 
-    def _fail(self, message: str) -> None:
+    def _fail(self, error: ServiceError) -> None:
         """The run that is computed now cannot go on."""
-        run = self._course.begin.run if self._course is not None else ""
+        course, run = self._course, self.run
         self._course = None
         self._computation = None
-        self._report(Failed(run, message))
+        self._report(Failed(run, *failure_of(error)))
+        if course is not None:
+            self._let_go(course)
 
-    def _halt(self, run: str, message: str) -> None:
+    @property
+    def run(self) -> str:
+        """The run that is computed now, or nothing."""
+        return self._course.begin.run if self._course is not None else ""
+
+    def _halt(self, run: str, error: StoreError) -> None:
         """A frame could not be stored (told by the publisher's thread): compute nothing more for now."""
         self._halted = True
-        course = self._course
-        for name in {run, course.begin.run if course is not None else run}:
-            self._report(Paused(name, message))
+        for name in {run, self.run or run}:
+            self._report(Paused(name, str(error), isinstance(error, StoreFull)))
 
     def _should_stop(self) -> bool:
         if self._inbox.pending or self._halted:
@@ -278,75 +337,36 @@ class RunLoop:
             self._progress(course, computation)
         return False
 
-    def _progress(self, course: _Course, computation: Computation) -> None:
+    def _take_stock(self, course: Course, computation: Computation) -> None:
+        """What is too dear to be asked for between two frames."""
+        now = clock.perf_counter()
+        budget = computation.solver.budget()
+        course.volume_error = budget.error_relative
+        course.wet_cells = computation.solver.wet_cells
+        if course.finished or now >= course.budget_at:
+            course.budget_at = now + BUDGET_INTERVAL_S
+            course.limiting_cell = computation.solver.limiting_cell()
+            self._report(BudgetReport(course.begin.run, computation.solver.time, budget.as_dict()))
+
+    def _progress(self, course: Course, computation: Computation) -> None:
         course.progress_at = clock.perf_counter() + PROGRESS_INTERVAL_S
         solver = computation.solver
         wall = max(computation.elapsed_s - course.wall_before, 1e-9)
         steps = solver.step_count - course.steps_before
+        speed = (solver.time - course.began_at) / wall
+        left = course.begin.last_index * course.begin.output_interval - solver.time
         self._report(
             ProgressReport(
                 run=course.begin.run,
                 time=solver.time,
                 steps=solver.step_count,
                 dt=solver.dt,
-                speed_x_real_time=(solver.time - course.began_at) / wall,
+                speed_x_real_time=speed,
                 wall_s=computation.elapsed_s,
                 cell_steps_per_s=steps * computation.case.grid.cell_count / wall,
                 volume_error_relative=course.volume_error,
                 wet_cells=course.wet_cells,
+                limiting_cell=course.limiting_cell,
+                eta_s=max(left, 0.0) / speed if speed > 0.0 else None,
             )
         )
-
-
-@dataclass
-class _Course:
-    """Where the run of the moment is on its way.
-
-    Attributes:
-        begin: what was asked for.
-        position: the leg of the lineage that is being computed.
-        next_index: the next frame of the own leg.
-        computing: whether to go on.
-        finished: whether the last frame was handed over.
-        scale: depth of one unit in the open group of frames [m].
-        group_end: index at which the next group begins.
-        remember_at: wall clock from which the next state is kept in memory.
-        checkpoint_at: wall clock from which the next state goes to disk; None: the next one does.
-        progress_at: wall clock of the next progress report.
-        began_at: simulated time at which this stretch began [s].
-        wall_before: wall time computed before this stretch [s].
-        steps_before: solver steps before this stretch.
-        volume_error: error of the volume budget at the last frame, relative.
-        wet_cells: cells with water at the last frame.
-    """
-
-    begin: Begin
-    position: int = 0
-    next_index: int = 0
-    computing: bool = False
-    finished: bool = False
-    scale: float = 0.0
-    group_end: int = -1
-    remember_at: float = 0.0
-    checkpoint_at: float | None = None
-    progress_at: float = 0.0
-    began_at: float = 0.0
-    wall_before: float = 0.0
-    steps_before: int = 0
-    volume_error: float = 0.0
-    wet_cells: int = 0
-
-    @property
-    def is_own(self) -> bool:
-        """Whether the leg that is computed is the run's own."""
-        return self.position == len(self.begin.legs) - 1
-
-
-def _next_index(begin: Begin, position: int, time: float) -> int:
-    """The frame time to land on next: the first after `time`, or `time` itself if something is due there."""
-    own = position == len(begin.legs) - 1
-    due = begin.stored_frames if own else begin.legs[position + 1].first_index
-    nearest = round(time / begin.output_interval)
-    if nearest * begin.output_interval == time:
-        return nearest if nearest >= due else nearest + 1
-    return int(time // begin.output_interval) + 1

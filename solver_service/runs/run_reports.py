@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from typing import Literal
 
-from protocol import Notice, Progress, RunChanged
+from protocol import Notice, Progress, RunChanged, WaterBudget
 from solver_service.errors import RunError
 from solver_service.runs.audience import Audience
-from solver_service.runs.run_status import ACTIVE, RunStatus, check_move
+from solver_service.runs.run_status import ACTIVE, Move, RunStatus, check_move
 from solver_service.runs.run_tree import Run, RunTree
 from solver_service.runs.store_thread import StoreThread
 from solver_service.runs.worker import Worker
 from solver_service.runs.worker_messages import (
+    BudgetReport,
     CheckpointStored,
     Failed,
     FrameStored,
@@ -22,12 +24,24 @@ from solver_service.runs.worker_messages import (
     Report,
     Running,
 )
-from solver_service.store import RunDatabase
+from solver_service.store import FrameRecord, RunDatabase
 
 LOG = logging.getLogger(__name__)
 
 RUN_CHANGED_INTERVAL_S = 0.25
 TEXT_LENGTH = 2000
+BALANCE = (
+    "initial",
+    "stored",
+    "inflow",
+    "outflow",
+    "rain",
+    "infiltration",
+    "edits",
+    "error",
+    "error_relative",
+)
+"""The sums of a volume budget, by their names in the solver and on the wire."""
 
 
 class RunReports:
@@ -40,13 +54,14 @@ class RunReports:
         self._announced_soon: set[str] = set()
         self.longest_publish_wait_s = 0.0
 
-    def move(self, run: Run, status: RunStatus, reason: str = "") -> None:
+    def move(self, run: Run, move: Move, reason: str = "") -> None:
         """Move a run to a status, in memory at once and in the store in its turn, and tell everybody.
 
         Raises:
             RunError: the move is not legal.
         """
-        check_move(run.run, run.status, status)
+        status = check_move(run.run, run.status, move)
+        run.lacks_room = False
         run.status, run.reason = status, reason[:TEXT_LENGTH]
         self._store.later(RunDatabase.set_status, run.run, status.value, run.reason)
         self._audience.announce(RunChanged(self._tree.info(run)))
@@ -58,33 +73,32 @@ class RunReports:
                 self._frame_stored(report)
             case ProgressReport():
                 self._audience.announce(_progress(report))
+            case BudgetReport():
+                self._audience.announce(_water_budget(report))
             case Running():
                 run = self._tree.get(report.run)
                 if run.status is RunStatus.STARTING:
-                    self.move(run, RunStatus.RUNNING)
+                    self.move(run, Move.BEGIN)
             case Paused():
                 run = self._tree.get(report.run)
                 if run.status in ACTIVE:
-                    self.move(run, RunStatus.PAUSED, report.message)
+                    self.move(run, Move.WAIT, report.message)
+                    run.lacks_room = report.lacks_room
                 if report.message:
-                    self._notice("error", f"paused: {report.message}", report.run)
+                    self.notice("error", f"paused: {report.message}", report.run)
             case Failed():
                 self._failed(worker, report)
             case Remark():
-                self._notice("warning", report.message, report.run)
+                self.notice("warning", report.message, report.run)
             case CheckpointStored():
                 LOG.debug("run %s: checkpoint at %s s", report.checkpoint.run, report.checkpoint.time)
 
-    def lost(self, worker: Worker) -> None:
-        """A worker died with a run in its hands."""
-        if worker.run is None or worker.run not in self._tree:
-            return  # it was loading a case for a run that is not made yet; whoever waits for that is told
-        run = self._tree.get(worker.run)
-        run.worker = None
-        if run.status in ACTIVE:
-            reason = "its worker process ended unexpectedly; resume goes on from the last checkpoint"
-            self.move(run, RunStatus.FAILED, reason)
-            self._notice("error", f"failed: {reason}", run.run)
+    def frames_found(self, run: Run, frames: list[FrameRecord]) -> None:
+        """Believe the rows of a run for which nobody writes: some may never have been reported."""
+        run.frames = frames
+        self._audience.frame_stored(run.run)
+        if run.frame_count > run.last_index and run.status in (*ACTIVE, RunStatus.PAUSED):
+            self.move(run, Move.FINISH)
 
     def _frame_stored(self, report: FrameStored) -> None:
         frame = report.frame
@@ -95,7 +109,7 @@ class RunReports:
         run.frames.append(frame)
         self._audience.frame_stored(run.run)
         if frame.index >= run.last_index and run.status in (*ACTIVE, RunStatus.PAUSED):
-            self.move(run, RunStatus.FINISHED)
+            self.move(run, Move.FINISH)
         elif run.run not in self._announced_soon:
             self._announced_soon.add(run.run)
             asyncio.get_running_loop().call_later(RUN_CHANGED_INTERVAL_S, self._announce, run)
@@ -111,12 +125,13 @@ class RunReports:
             return
         run = self._tree.get(report.run)
         if run.status in ACTIVE:
-            self.move(run, RunStatus.FAILED, report.message)
-        self._notice("error", f"failed: {report.message}", report.run)
+            self.move(run, Move.FAIL, report.message)
+        self.notice("error", f"failed: {report.message}", report.run)
 
-    def _notice(self, level: str, text: str, run: str) -> None:
+    def notice(self, level: Literal["info", "warning", "error"], text: str, run: str) -> None:
+        """Tell everybody something that a person should read."""
         LOG.warning("run %s: %s", run, text)
-        self._audience.announce(Notice("error" if level == "error" else "warning", text[:TEXT_LENGTH], run))
+        self._audience.announce(Notice(level, text[:TEXT_LENGTH], run))
 
 
 def _progress(report: ProgressReport) -> Progress:
@@ -130,4 +145,20 @@ def _progress(report: ProgressReport) -> Progress:
         cell_steps_per_s=report.cell_steps_per_s,
         volume_error_relative=report.volume_error_relative,
         wet_cells=report.wet_cells,
+        limiting_cell=report.limiting_cell,
+        eta_s=report.eta_s,
+    )
+
+
+def _water_budget(report: BudgetReport) -> WaterBudget:
+    budget = report.budget
+    return WaterBudget(
+        run=report.run,
+        time=report.time,
+        **{name: budget[name] for name in BALANCE},
+        sources=dict(budget["sources"]),
+        edges_in={name: edge["in"] for name, edge in budget["edges"].items()},
+        edges_out={name: edge["out"] for name, edge in budget["edges"].items()},
+        structures=dict(budget["structures"]),
+        moved=dict(budget["moved"]),
     )

@@ -31,6 +31,7 @@ class Run:
         reason: a sentence for failed runs and those that paused by themselves.
         frames: rows of its own frames, from `first_index` without a hole.
         worker: the process that computes or holds it.
+        lacks_room: whether it paused because the disk or the budget was full.
         lock: one command at a time.
     """
 
@@ -41,7 +42,14 @@ class Run:
     reason: str
     frames: list[FrameRecord]
     worker: Worker | None = None
+    lacks_room: bool = False
     lock: asyncio.Lock = field(default_factory=asyncio.Lock)
+
+    @classmethod
+    def of(cls, record: RunRecord, events: Iterable[EditEvent]) -> Run:
+        """A run as its row and the history of its working list tell it, without frames."""
+        facts = CaseFacts.unpack(record.facts)
+        return cls(record, facts, replayed_log(events), RunStatus(record.status), record.status_reason, [])
 
     @property
     def run(self) -> str:
@@ -73,6 +81,14 @@ class RunTree:
     def add(self, run: Run) -> None:
         """Take a run in; its parent must be there."""
         self._runs[run.run] = run
+
+    def remove(self, name: str) -> None:
+        """Forget a run that has no children."""
+        del self._runs[name]
+
+    def children(self, name: str) -> list[Run]:
+        """The runs that branched from a run."""
+        return [run for run in self._runs.values() if run.record.parent == name]
 
     def __iter__(self) -> Iterator[Run]:
         """Runs in the order in which they were made."""
@@ -134,6 +150,8 @@ class RunTree:
             source=facts.source,
             licence=facts.licence,
             message=run.reason,
+            label=record.label,
+            pinned=record.pinned,
         )
 
     def _leg(self, name: str) -> tuple[Leg, str | None]:

@@ -35,8 +35,7 @@ class StateKeeper:
         self._epoch = epoch
         self._report = report
         self._wake = threading.Condition()
-        self._to_disk: deque[tuple[str, StoredState, Callable[[], None] | None]] = deque()
-        self._busy = False
+        self._to_disk: deque[tuple[str, StoredState | None, Callable[[], None] | None]] = deque()
         self._unpacked = False
         self._closing = False
         self._thread = threading.Thread(target=self._work, name="state-keeper", daemon=True)
@@ -63,10 +62,11 @@ class StateKeeper:
             self._to_disk = deque([*waiting, (run, state, then)])
             self._wake.notify_all()
 
-    def flush(self) -> None:
-        """Wait until every state meant for the disk is there (or was refused)."""
+    def then(self, call: Callable[[], None]) -> None:
+        """Have something called once every state meant for the disk so far is there (or was refused)."""
         with self._wake:
-            self._wake.wait_for(lambda: not self._to_disk and not self._busy)
+            self._to_disk.append(("", None, call))
+            self._wake.notify_all()
 
     def close(self) -> None:
         """Write what waits for the disk, then end the thread."""
@@ -84,7 +84,6 @@ class StateKeeper:
                 job = self._to_disk.popleft() if self._to_disk else None
                 if job is None and self._closing:
                     break
-                self._busy = job is not None
                 self._unpacked = self._unpacked and job is not None
             if job is None:
                 if self.ring.pack_one():
@@ -92,13 +91,11 @@ class StateKeeper:
                         self._unpacked = True
                 continue
             run, state, then = job
-            try:
-                self._report(CheckpointStored(store.write(run, state)))
-            except StoreError as error:
-                self._report(Remark(run, str(error)))
+            if state is not None:
+                try:
+                    self._report(CheckpointStored(store.write(run, state)))
+                except StoreError as error:
+                    self._report(Remark(run, str(error)))
             if then is not None:
                 then()
-            with self._wake:
-                self._busy = False
-                self._wake.notify_all()
         database.close()

@@ -11,10 +11,14 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 
 from solver_service.errors import RunError
+from solver_service.runs.worker_failure import FailureKind, failure_of_exit
 from solver_service.runs.worker_messages import (
+    Begin,
     CaseLoaded,
     CaseRefused,
     Command,
+    Failed,
+    Left,
     LoadCase,
     Quit,
     Ready,
@@ -40,6 +44,8 @@ class Worker:
         run: id of the run it computes or holds, None for a spare one.
         devices: devices it can use, once it is ready.
         case: case and device it has loaded, None for none.
+        holds: runs of which something may still be on its way from this worker to the disk, with the number
+            of the last Begin of each.
     """
 
     def __init__(
@@ -55,7 +61,9 @@ class Worker:
         self.run: str | None = None
         self.devices: tuple[str, ...] = ()
         self.case: tuple[str, str] | None = None
+        self.holds: dict[str, int] = {}
         self.pid: int | None = None
+        self._last_words: Failed | None = None
         self._on_report = on_report
         self._on_death = on_death
         self._unfit = ""
@@ -102,6 +110,8 @@ class Worker:
     def send(self, command: Command) -> None:
         """Tell it something; a dead worker hears nothing, and its death is told by `on_death`."""
         if self._connection is not None and not self._dead.is_set():
+            if isinstance(command, Begin):
+                self.holds[command.run] = command.number
             try:
                 self._connection.send(command)
             except OSError:
@@ -135,6 +145,13 @@ class Worker:
         except TimeoutError:
             self.kill()
             await self._dead.wait()
+
+    @property
+    def cause_of_death(self) -> tuple[FailureKind, str]:
+        """Why the process is gone: what it said itself, else what its exit status means."""
+        if self._last_words is not None:
+            return self._last_words.kind, self._last_words.message
+        return failure_of_exit(self._process.exitcode if self._process is not None else None)
 
     def kill(self) -> None:
         """End the process at once."""
@@ -171,12 +188,19 @@ class Worker:
             case StateSaved():
                 if self._saved is not None and not self._saved.done():
                     self._saved.set_result(report.ok)
+            case Failed(ending=True):
+                self._last_words = report  # told with its death, which comes at once
+            case Left():
+                if self.holds.get(report.run) == report.number:
+                    del self.holds[report.run]
+                self._on_report(self, report)
             case _:
                 self._on_report(self, report)
 
     def _end(self) -> None:
         self._dead.set()
-        gone = RunError("the worker process ended unexpectedly")
+        self.holds.clear()
+        gone = RunError(f"nothing was done: {self.cause_of_death[1]}")
         if self._loaded is not None and not self._loaded.done():
             self._loaded.set_exception(gone)
         if self._saved is not None and not self._saved.done():

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from solver_service.runs.case_facts import CaseFacts
 from solver_service.runs.lineage import Leg
+from solver_service.runs.worker_failure import FailureKind
 from solver_service.store import CheckpointRecord, FrameRecord
 
 
@@ -54,8 +56,8 @@ class Begin:
         legs: the lineage.
         output_interval: time between frames [s].
         last_index: index of the last frame.
-        stored_frames: frames of this run with an index below this are stored already.
         paused: bring the run to its first frame only and wait.
+        number: tells this order from others for the same run; comes back with `Left`.
     """
 
     run: str
@@ -65,13 +67,16 @@ class Begin:
     legs: tuple[Leg, ...]
     output_interval: float
     last_index: int
-    stored_frames: int
     paused: bool = False
+    number: int = 0
 
 
 @dataclass(frozen=True)
 class Pause:
-    """Stop between two steps, checkpoint, wait. `final` runs are not resumed and need no checkpoint."""
+    """Stop between two steps, checkpoint, wait; a run without a frame gets its first one before it waits.
+
+    `final` runs are not resumed and need neither.
+    """
 
     run: str
     final: bool = False
@@ -190,22 +195,62 @@ class ProgressReport:
     cell_steps_per_s: float
     volume_error_relative: float
     wet_cells: int
+    limiting_cell: tuple[int, int] | None
+    eta_s: float | None
+
+
+@dataclass(frozen=True)
+class BudgetReport:
+    """Where the water came from and went, up to a frame; `budget` is that of the solver by name."""
+
+    run: str
+    time: float
+    budget: dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Paused:
-    """The run waits; `message` says why when nobody asked for it."""
+    """The run waits; `message` says why when nobody asked for it.
+
+    Attributes:
+        run: the run.
+        message: a sentence, or nothing.
+        lacks_room: whether it waits for room on the disk and may go on by itself when there is some.
+    """
 
     run: str
     message: str = ""
+    lacks_room: bool = False
 
 
 @dataclass(frozen=True)
 class Failed:
-    """The run cannot go on."""
+    """The run cannot go on in this process.
+
+    Attributes:
+        run: the run, or nothing when none was computed.
+        kind: what went wrong.
+        message: a clause for people.
+        ending: whether the process ends with it.
+    """
 
     run: str
+    kind: FailureKind
     message: str
+    ending: bool = False
+
+
+@dataclass(frozen=True)
+class Left:
+    """Nothing of this run is on its way to the disk any more, until another Begin.
+
+    Attributes:
+        run: the run.
+        number: number of the last Begin that was obeyed.
+    """
+
+    run: str
+    number: int
 
 
 @dataclass(frozen=True)
@@ -226,7 +271,9 @@ Report = (
     | CheckpointStored
     | StateSaved
     | ProgressReport
+    | BudgetReport
     | Paused
     | Failed
+    | Left
     | Remark
 )

@@ -34,7 +34,7 @@ class WorkerPool:
             settings: what each worker is told.
             spare_count: warm workers that stand by.
             on_report: called with every report of a run.
-            on_lost: called when a worker with a run died.
+            on_lost: called when a worker died.
             can_leave: whether a run does not need its worker (it is paused or has ended).
         """
         self._settings = settings
@@ -126,7 +126,7 @@ class WorkerPool:
             self._workers.remove(worker)
         if self._closing:
             return
-        LOG.info("worker %d (process %s) ended", worker.number, worker.pid)
+        LOG.info("worker %d (process %s): %s", worker.number, worker.pid, worker.cause_of_death[1])
+        self._on_lost(worker)
         if worker.run is not None:
-            self._on_lost(worker)
             self.start_spares(SPARE_DELAY_S)

@@ -11,9 +11,12 @@ import threading
 from multiprocessing.connection import Connection
 
 from solver_service.errors import ServiceError
-from solver_service.runs.worker_messages import Ready, Report, Unfit, WorkerSettings
+from solver_service.runs.worker_failure import failure_of
+from solver_service.runs.worker_messages import Failed, Ready, Report, Unfit, WorkerSettings
 
 LOG = logging.getLogger(__name__)
+
+FAILED = 1
 
 
 def worker_main(settings: WorkerSettings, connection: Connection) -> None:
@@ -46,8 +49,22 @@ def worker_main(settings: WorkerSettings, connection: Connection) -> None:
     gc.freeze()
     gc.disable()  # a collection on another thread can break a CUDA graph capture; the solver thread collects
     loop = RunLoop(settings, Inbox(connection), report)
+
+    def give_up(error: BaseException | None) -> None:
+        """Say why, and end: after an error that nobody foresaw neither memory nor device can be trusted."""
+        try:
+            LOG.error("the worker gives up", exc_info=error)
+            kind, message = failure_of(error or RuntimeError("a thread ended"))
+            report(Failed(loop.run, kind, message, ending=True))
+        finally:
+            os._exit(FAILED)
+
+    threading.excepthook = lambda thread: give_up(thread.exc_value)
     report(Ready(os.getpid(), tuple(device_names())))
-    loop.serve()
+    try:
+        loop.serve()
+    except Exception as error:
+        give_up(error)
 
 
 def start_worker(settings: WorkerSettings) -> tuple[multiprocessing.process.BaseProcess, Connection]:

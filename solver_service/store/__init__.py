@@ -3,6 +3,7 @@
 from solver_service.store.checkpoint_store import CheckpointStore, StoredState
 from solver_service.store.data_folder import DataFolder, default_data_dir
 from solver_service.store.frame_files import FrameReader, FrameWriter
+from solver_service.store.mend import mend_run, remove_run_files
 from solver_service.store.records import (
     CheckpointRecord,
     EditEvent,
@@ -29,5 +30,7 @@ __all__ = [
     "StoredState",
     "default_data_dir",
     "load_bed",
+    "mend_run",
+    "remove_run_files",
     "save_bed",
 ]

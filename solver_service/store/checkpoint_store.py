@@ -23,6 +23,7 @@ from zarr.codecs import ZstdCodec
 from solver_service.errors import StoreError
 from solver_service.store.data_folder import DataFolder, fsync_file, fsync_folder
 from solver_service.store.records import CheckpointRecord
+from solver_service.store.room import store_failure
 from solver_service.store.run_database import RunDatabase
 
 KEEP = 3
@@ -81,10 +82,10 @@ class CheckpointStore:
         except (OSError, StoreError) as error:
             shutil.rmtree(temporary, ignore_errors=True)
             shutil.rmtree(parent / name, ignore_errors=True)
-            reason = (error.strerror or error) if isinstance(error, OSError) else error
-            raise StoreError(
-                f"checkpoint of run {run} at {state.time} s cannot be stored in {parent}: {reason}"
-            ) from error
+            sentence = f"checkpoint of run {run} at {state.time} s cannot be stored in {parent}"
+            if isinstance(error, OSError):
+                raise store_failure(error, sentence) from error
+            raise type(error)(f"{sentence}: {error}") from error
         self._retire(run)
         return record
 

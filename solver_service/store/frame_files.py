@@ -15,6 +15,7 @@ from pathlib import Path
 from solver_service.errors import StoreError
 from solver_service.store.data_folder import DataFolder, fsync_folder
 from solver_service.store.records import FrameRecord
+from solver_service.store.room import store_failure
 from solver_service.store.run_database import RunDatabase
 
 SEGMENT_BYTES = 256 * 1024 * 1024
@@ -46,8 +47,8 @@ class FrameWriter:
         """Store one frame; when this returns it survives a power cut.
 
         Raises:
-            StoreError: the disk is full or broken; nothing of the frame is visible and the call may be
-                repeated.
+            StoreError: the disk is full (`StoreFull`) or broken; nothing of the frame is visible and the call
+                may be repeated.
         """
         try:
             descriptor = self._open_segment()
@@ -67,9 +68,8 @@ class FrameWriter:
             self._database.insert_frame(record)
         except OSError as error:
             self._cut()
-            raise StoreError(
-                f"frame {index} of run {self._run} cannot be stored in {self._folder.root}: "
-                f"{error.strerror or error}"
+            raise store_failure(
+                error, f"frame {index} of run {self._run} cannot be stored in {self._folder.root}"
             ) from error
         except StoreError:
             self._cut()

@@ -25,6 +25,8 @@ class RunRecord:
         bed_revision: revision of the edit list that made the bed of this run.
         bed_edits: the packed edit list that made the bed (opaque bytes).
         facts: what the tree keeps of the case: grid, source, licence (opaque bytes).
+        label: the name that people gave it, or nothing.
+        pinned: whether it is kept whatever the budget of the store.
     """
 
     run: str
@@ -41,6 +43,8 @@ class RunRecord:
     bed_revision: int
     bed_edits: bytes
     facts: bytes
+    label: str = ""
+    pinned: bool = False
 
 
 @dataclass(frozen=True)

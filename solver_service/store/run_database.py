@@ -23,8 +23,9 @@ from solver_service.store.records import (
     RunEvent,
     RunRecord,
 )
+from solver_service.store.room import store_failure
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 BUSY_TIMEOUT_S = 10.0
 
 _SCHEMA = """
@@ -33,7 +34,8 @@ CREATE TABLE runs (
     run TEXT PRIMARY KEY, "case" TEXT NOT NULL, case_fingerprint TEXT NOT NULL, title TEXT NOT NULL,
     parent TEXT REFERENCES runs(run), branch_index INTEGER NOT NULL, status TEXT NOT NULL,
     status_reason TEXT NOT NULL, duration REAL NOT NULL, output_interval REAL NOT NULL, device TEXT NOT NULL,
-    bed_revision INTEGER NOT NULL, bed_edits BLOB NOT NULL, facts BLOB NOT NULL);
+    bed_revision INTEGER NOT NULL, bed_edits BLOB NOT NULL, facts BLOB NOT NULL,
+    label TEXT NOT NULL DEFAULT '', pinned INTEGER NOT NULL DEFAULT 0);
 CREATE TABLE edit_events (
     run TEXT NOT NULL REFERENCES runs(run), sequence INTEGER NOT NULL, kind TEXT NOT NULL, edit BLOB NOT NULL,
     PRIMARY KEY (run, sequence)) WITHOUT ROWID;
@@ -47,6 +49,13 @@ CREATE TABLE checkpoints (
 CREATE TABLE run_events (run TEXT NOT NULL, wall_time REAL NOT NULL, kind TEXT NOT NULL, detail TEXT NOT
 NULL); INSERT INTO service VALUES ('epoch', 0);
 """
+_UPGRADES = {
+    1: """
+ALTER TABLE runs ADD COLUMN label TEXT NOT NULL DEFAULT '';
+ALTER TABLE runs ADD COLUMN pinned INTEGER NOT NULL DEFAULT 0;
+"""
+}
+"""What leads from a schema to the next one."""
 
 
 def _columns(record: type) -> str:
@@ -85,8 +94,10 @@ class RunDatabase:
             version = self._db.execute("PRAGMA user_version").fetchone()[0]
             if version == 0:
                 self._db.executescript(f"BEGIN;{_SCHEMA}PRAGMA user_version = {SCHEMA_VERSION};COMMIT;")
-            elif version != SCHEMA_VERSION:
+            elif not 0 < version <= SCHEMA_VERSION:
                 raise StoreError(f"store {path} has schema {version}; this service reads {SCHEMA_VERSION}")
+            for old in range(max(version, 1), SCHEMA_VERSION if version else 0):
+                self._db.executescript(f"BEGIN;{_UPGRADES[old]}PRAGMA user_version = {old + 1};COMMIT;")
 
     def close(self) -> None:
         """Close the connection."""
@@ -124,7 +135,19 @@ class RunDatabase:
         """All runs in the order in which they were made."""
         with _told(self._path):
             rows = self._db.execute(f"SELECT {_RUN} FROM runs ORDER BY rowid").fetchall()
-        return [RunRecord(*row) for row in rows]
+        return [replace(RunRecord(*row), pinned=bool(row[-1])) for row in rows]
+
+    def mark_run(self, run: str, label: str, pinned: bool) -> None:
+        """Record the name that people gave a run, and whether it is kept whatever the budget."""
+        with self._transaction():
+            self._db.execute("UPDATE runs SET label = ?, pinned = ? WHERE run = ?", (label, pinned, run))
+            self._log(run, "marked", f"label {label!r}, {'pinned' if pinned else 'not pinned'}")
+
+    def delete_run(self, run: str) -> None:
+        """Forget a run without children and all that is known of it; its files are removed afterwards."""
+        with self._transaction():
+            for table in ("frames", "checkpoints", "edit_events", "run_events", "runs"):
+                self._db.execute(f"DELETE FROM {table} WHERE run = ?", (run,))
 
     def interrupt_active(self, active: tuple[str, ...], status: str, reason: str) -> list[str]:
         """Move every run whose status is in `active` to `status`; for the start after a crash."""
@@ -166,6 +189,22 @@ class RunDatabase:
                 f'SELECT {_FRAME} FROM frames WHERE run = ? ORDER BY "index"', (run,)
             ).fetchall()
         return [FrameRecord(*row) for row in rows]
+
+    def frame(self, run: str, index: int) -> FrameRecord | None:
+        """One frame of a run, or None."""
+        with _told(self._path):
+            row = self._db.execute(
+                f'SELECT {_FRAME} FROM frames WHERE run = ? AND "index" = ?', (run, index)
+            ).fetchone()
+        return None if row is None else FrameRecord(*row)
+
+    def last_frame(self, run: str) -> FrameRecord | None:
+        """The frame of a run with the highest index, or None."""
+        with _told(self._path):
+            row = self._db.execute(
+                f'SELECT {_FRAME} FROM frames WHERE run = ? ORDER BY "index" DESC LIMIT 1', (run,)
+            ).fetchone()
+        return None if row is None else FrameRecord(*row)
 
     def segment_ends(self, run: str) -> dict[str, int]:
         """Committed length of every segment file of a run."""
@@ -263,4 +302,4 @@ def _told(path: Path) -> Iterator[None]:
     try:
         yield
     except sqlite3.Error as error:
-        raise StoreError(f"store {path}: {error}") from error
+        raise store_failure(error, f"store {path}") from error

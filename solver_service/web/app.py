@@ -116,7 +116,7 @@ def create_app(registry: RunRegistry, gate: Gate) -> FastAPI:
             return
         await websocket.accept(subprotocol=PROTOCOL_VERSION)
         authorised = websocket.headers.get("authorization") is not None
-        connection = StreamConnection(websocket, registry, gate, authorised)
+        connection = StreamConnection(websocket, registry, gate, authorised, connections)
         connections.add(connection)
         try:
             await connection.serve()

@@ -9,12 +9,16 @@ from protocol import (
     AppendEdit,
     CaseList,
     Command,
+    DeleteRun,
     GetTerrain,
     ListCases,
     ListRuns,
     PauseRun,
+    PinRun,
     Recalculate,
     RedoEdit,
+    ReleaseControl,
+    RenameRun,
     ResumeRun,
     RunChanged,
     RunList,
@@ -24,16 +28,34 @@ from protocol import (
     StartRun,
     StopRun,
     Subscribe,
+    TakeControl,
     Terrain,
     UndoEdit,
+    UnpinRun,
     Unsubscribe,
     limits,
 )
-from solver_service.runs import RunRegistry
+from solver_service.errors import RunError
+from solver_service.runs import RunRegistry, Session
 from solver_service.web.frame_feed import FrameFeed
 from solver_service.web.outbox import Outbox
 
 LISTED = 1000
+
+CHANGES = (
+    PauseRun
+    | ResumeRun
+    | StopRun
+    | DeleteRun
+    | RenameRun
+    | PinRun
+    | UnpinRun
+    | AppendEdit
+    | UndoEdit
+    | RedoEdit
+    | Recalculate
+)
+"""Commands for which a session must control the run."""
 
 
 class Client(Protocol):
@@ -43,6 +65,13 @@ class Client(Protocol):
     session: ServerSession
     feed: FrameFeed
     outbox: Outbox
+
+    @property
+    def identity(self) -> Session:
+        """Who it is."""
+
+    def find_session(self, name: str) -> Session | None:
+        """Another connection by its id."""
 
     def tell(self, message: ServerMessage) -> None:
         """Queue one message."""
@@ -56,6 +85,9 @@ async def carry_out(command: Command, client: Client) -> None:
         EditError: an edit does not fit.
     """
     registry = client.registry
+    if isinstance(command, CHANGES):
+        registry.tree.get(command.run)
+        registry.controllers.claim(command.run, client.identity)
     match command:
         case ListCases():
             client.tell(CaseList(command.id, registry.cases[:LISTED]))
@@ -65,6 +97,7 @@ async def carry_out(command: Command, client: Client) -> None:
             run = await registry.start_run(
                 command.case, command.duration, command.output_interval, command.device, command.paused
             )
+            registry.controllers.take(run.run, client.identity, force=True)
             client.tell(Ack(command.id, {"run": run.run}))
         case PauseRun():
             await registry.pause(command.run)
@@ -75,6 +108,22 @@ async def carry_out(command: Command, client: Client) -> None:
         case StopRun():
             await registry.stop(command.run)
             client.tell(Ack(command.id))
+        case DeleteRun():
+            await registry.delete(command.run)
+            client.tell(Ack(command.id))
+        case RenameRun():
+            await registry.rename(command.run, command.label)
+            client.tell(Ack(command.id))
+        case PinRun() | UnpinRun():
+            await registry.pin(command.run, isinstance(command, PinRun))
+            client.tell(Ack(command.id))
+        case TakeControl():
+            registry.tree.get(command.run)
+            registry.controllers.take(command.run, client.identity, command.force)
+            client.tell(Ack(command.id))
+        case ReleaseControl():
+            _release(command, client)
+            client.tell(Ack(command.id))
         case GetTerrain():
             await _send_terrain(command, client)
         case Subscribe() | Seek():
@@ -83,25 +132,36 @@ async def carry_out(command: Command, client: Client) -> None:
             client.feed.follow_session()
             if isinstance(command, Subscribe):
                 client.tell(RunChanged(registry.tree.info(registry.tree.get(command.run))))
-                client.tell(registry.edits_changed(command.run))
+                client.tell(registry.edits.changed(command.run))
+                client.tell(registry.controllers.of(command.run))
         case Unsubscribe():
             client.tell(Ack(command.id))
             client.feed.follow_session()
         case AppendEdit():
-            revision = await registry.append_edit(command.run, command.edit)
+            revision = await registry.edits.append(command.run, command.edit)
             client.tell(Ack(command.id, {"revision": revision}))
         case UndoEdit():
-            client.tell(Ack(command.id, {"revision": await registry.undo_edit(command.run)}))
+            client.tell(Ack(command.id, {"revision": await registry.edits.undo(command.run)}))
         case RedoEdit():
-            client.tell(Ack(command.id, {"revision": await registry.redo_edit(command.run)}))
+            client.tell(Ack(command.id, {"revision": await registry.edits.redo(command.run)}))
         case Recalculate():
             watched = client.feed.run
             child = await registry.recalculate(
                 command.run, command.index, command.revision, command.keep_parent
             )
+            registry.controllers.take(child.run, client.identity, force=True)
             client.tell(Ack(command.id, {"run": child.run}))
             if watched == command.run:
                 client.feed.move_to(child.run, command.index)
+
+
+def _release(command: ReleaseControl, client: Client) -> None:
+    registry = client.registry
+    registry.tree.get(command.run)
+    heir = client.find_session(command.to) if command.to is not None else None
+    if command.to is not None and heir is None:
+        raise RunError(f"there is no session {command.to!r} to control run {command.run}")
+    registry.controllers.release(command.run, client.identity, heir)
 
 
 async def _send_terrain(command: GetTerrain, client: Client) -> None:

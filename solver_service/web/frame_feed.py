@@ -37,6 +37,11 @@ class FrameFeed:
         if wanted is not None:
             self._cursor = _Cursor(wanted.run, wanted.from_index, wanted.mode == "live")
 
+    def leave(self, run: str) -> None:
+        """Send nothing more of a run that is gone."""
+        if self.run == run:
+            self._cursor = None
+
     def move_to(self, run: str, index: int) -> None:
         """Go on with another run from a frame index; what was watched is left."""
         if self._cursor is not None:

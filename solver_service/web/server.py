@@ -48,6 +48,8 @@ def run_service(settings: ServiceSettings) -> None:
             ring_bytes=settings.ring_bytes,
             checkpoint_interval_s=settings.checkpoint_interval_s,
             spare_workers=settings.spare_workers,
+            restart_attempts=settings.restart_attempts,
+            restart_within_s=settings.restart_within_s,
         )
         gate = Gate(load_token(settings.token_path), settings.allowed_origins)
     except BaseException:

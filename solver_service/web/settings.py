@@ -30,6 +30,8 @@ class ServiceSettings:
         ring_bytes: memory in which a worker keeps recent states for Recalculate [bytes].
         checkpoint_interval_s: wall time between checkpoints on disk [s].
         spare_workers: warm workers that stand by.
+        restart_attempts: how often a run whose worker died is taken up again by itself; a blow-up never is.
+        restart_within_s: the time in which these attempts count [s].
     """
 
     host: str = "127.0.0.1"
@@ -45,6 +47,8 @@ class ServiceSettings:
     ring_bytes: int = 1 << 30
     checkpoint_interval_s: float = 60.0
     spare_workers: int = 1
+    restart_attempts: int = 3
+    restart_within_s: float = 600.0
 
     @property
     def token_path(self) -> Path:

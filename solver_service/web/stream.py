@@ -5,11 +5,14 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
+from collections.abc import Set
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from protocol import (
     Command,
+    ControlChanged,
+    ControlRequested,
     EditsChanged,
     Error,
     Hello,
@@ -18,15 +21,18 @@ from protocol import (
     ProtocolError,
     RunBranched,
     RunChanged,
+    RunRemoved,
     Seek,
     ServerMessage,
     ServerSession,
+    SessionState,
     Subscribe,
     Unsubscribe,
+    WaterBudget,
     Welcome,
 )
 from solver_service.errors import ServiceError, StoreError
-from solver_service.runs import RunRegistry
+from solver_service.runs import RunRegistry, Session
 from solver_service.web.auth import Gate
 from solver_service.web.commands import carry_out
 from solver_service.web.error_codes import wire_code
@@ -39,6 +45,7 @@ LOG = logging.getLogger(__name__)
 HELLO_TIMEOUT_S = 5.0
 SEND_TIMEOUT_S = 20.0
 POLICY_VIOLATION = 1008
+REPLACED = 4001
 
 
 class ConnectionEnded(Exception):
@@ -48,7 +55,14 @@ class ConnectionEnded(Exception):
 class StreamConnection:
     """A client on the stream; a `Listener` of the runs."""
 
-    def __init__(self, websocket: WebSocket, registry: RunRegistry, gate: Gate, authorised: bool) -> None:
+    def __init__(
+        self,
+        websocket: WebSocket,
+        registry: RunRegistry,
+        gate: Gate,
+        authorised: bool,
+        others: Set[StreamConnection] = frozenset(),
+    ) -> None:
         """A connection that has been accepted.
 
         Args:
@@ -56,18 +70,21 @@ class StreamConnection:
             registry: the runs.
             gate: who may come in.
             authorised: whether the Authorization header carried the token.
+            others: the connections there are, itself included.
         """
         self.session = ServerSession()
         self.registry = registry
         self.feed = FrameFeed(registry, self.session)
         self.outbox = Outbox()
         self.name = f"s{secrets.token_hex(6)}"
+        self._others = others
         self._websocket = websocket
         self._gate = gate
         self._authorised = authorised
         self._commands: asyncio.Queue[Command] = asyncio.Queue()
         self._busy_with: Command | None = None
         self._held: list[ServerMessage] = []
+        self._controlled: set[str] = set()
 
     async def serve(self) -> None:
         """Talk until either side ends it."""
@@ -80,25 +97,54 @@ class StreamConnection:
             LOG.info("session %s ended", self.name)
         finally:
             self.registry.audience.remove(self)
+            self.registry.controllers.ended(self.name)
             self.session.close()
 
     def end(self, code: int, reason: str) -> None:
         """Close the connection from our side."""
         self.outbox.close(code, reason)
 
+    @property
+    def identity(self) -> Session:
+        """Who it is, as the others see it."""
+        return Session(self.name, self.session.hello.client if self.session.hello is not None else "")
+
+    def find_session(self, name: str) -> Session | None:
+        """A connection by its id."""
+        return next((other.identity for other in self._others if other.name == name), None)
+
     # what the runs say
 
     def announce(self, message: ServerMessage) -> None:
         """Queue what concerns this client; news of runs wait until the command under way is answered."""
         match message:
-            case Progress() if message.run != self.feed.run:
+            case Progress() | WaterBudget() if message.run != self.feed.run:
                 return
+            case ControlChanged():
+                if self._concerns(message):
+                    self.tell(message)
+                return
+            case ControlRequested() if message.run not in self._controlled:
+                return
+            case RunRemoved():
+                self.feed.leave(message.run)
             case EditsChanged() if message.run not in (self.feed.run, getattr(self._busy_with, "run", None)):
                 return
             case RunChanged() | RunBranched() | EditsChanged() if self._busy_with is not None:
                 self._held.append(message)
+                return
             case _:
-                self.tell(message)
+                pass
+        self.tell(message)
+
+    def _concerns(self, message: ControlChanged) -> bool:
+        """Whether a change of control is of a watched run, or of one that is or was controlled from here."""
+        held = message.run in self._controlled
+        if message.session == self.name:
+            self._controlled.add(message.run)
+        else:
+            self._controlled.discard(message.run)
+        return held or message.session == self.name or message.run == self.feed.run
 
     def frame_stored(self, run: str) -> None:
         """Let the sender look for the new frame."""
@@ -106,8 +152,9 @@ class StreamConnection:
             self.outbox.wake()
 
     def tell(self, message: ServerMessage) -> None:
-        """Queue one message."""
-        self.outbox.put(self.session.send(message))
+        """Queue one message; a connection that is over hears nothing."""
+        if self.session.state is not SessionState.CLOSED:
+            self.outbox.put(self.session.send(message))
 
     # the three tasks
 
@@ -136,7 +183,8 @@ class StreamConnection:
             command = await self._commands.get()
             self._busy_with = command
             try:
-                await carry_out(command, self)
+                # what has begun is carried to its end although the connection may end meanwhile
+                await self.registry.carry_through(carry_out(command, self))
             except (ServiceError, ProtocolError) as error:
                 self.tell(Error(command.id, wire_code(error), str(error)[:2000]))
             finally:
@@ -206,7 +254,16 @@ class StreamConnection:
         if hello.resume is not None and hello.resume.run in self.registry.tree:
             run = self.registry.tree.get(hello.resume.run)
             self.tell(RunChanged(self.registry.tree.info(run)))
-            self.tell(self.registry.edits_changed(run.run))
+            self.tell(self.registry.edits.changed(run.run))
+        if hello.resume is not None and hello.resume.session is not None:
+            self._replace(hello.resume.session)
+
+    def _replace(self, lost: str) -> None:
+        """Take the place of a connection that may not know yet that it is lost."""
+        for other in self._others:
+            if other.name == lost and other is not self:
+                self.registry.controllers.replaced(lost, self.identity)
+                other.end(REPLACED, f"session {self.name} has taken the place of this one")
 
     def _refuse(self, close_code: int, code: str, sentence: str) -> None:
         self.outbox.put(self.session.send(Error(None, code, sentence)))

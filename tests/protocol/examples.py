@@ -66,6 +66,8 @@ CHILD = p.RunInfo(
     lineage=(p.LineageEntry("r-1", 0), p.LineageEntry("r-2", 7)),
     start_time="1959-12-02T21:14:00+01:00",
     message="The water blew up.",
+    label="with the levee",
+    pinned=True,
 )
 CASE = p.CaseSummary(
     name="jacksboro",
@@ -85,7 +87,7 @@ CLIENT_EXAMPLES: dict[str, Message] = {
     "hello-resume": p.Hello(
         client="test 1.0",
         token="s3cret",
-        resume=p.ResumePoint(run="r-1", last_index=11, revision=2),
+        resume=p.ResumePoint(run="r-1", last_index=11, revision=2, session="c0ffee"),
         capabilities=(),
     ),
     "list_cases": p.ListCases(1),
@@ -105,6 +107,12 @@ CLIENT_EXAMPLES: dict[str, Message] = {
     "undo_edit": p.UndoEdit(13, "r-1"),
     "redo_edit": p.RedoEdit(14, "r-1"),
     "recalculate": p.Recalculate(15, "r-1", 7, 1),
+    "rename_run": p.RenameRun(16, "r-1", "with the levee"),
+    "pin_run": p.PinRun(17, "r-1"),
+    "unpin_run": p.UnpinRun(18, "r-1"),
+    "delete_run": p.DeleteRun(19, "r-1"),
+    "take_control": p.TakeControl(20, "r-1", True),
+    "release_control": p.ReleaseControl(21, "r-1", "c0ffee"),
 }
 
 SERVER_EXAMPLES: dict[str, Message] = {
@@ -128,7 +136,28 @@ SERVER_EXAMPLES: dict[str, Message] = {
     "edits_changed": p.EditsChanged("r-1", 2, (LINE, AREA), True, False),
     "frame": p.Frame("r-1", 33, 330.0, 1, 32, 0.001, b"\x1b\x02", 6, 0xDEADBEEF, bytes(range(12))),
     "frame_part": p.FramePart("r-1", 33, 1, 2, bytes(range(8))),
-    "progress": p.Progress("r-1", 331.5, 1200, 0.25, 40.0, 8.3, 3.5e6, -1e-9, 4021, (60, 100)),
+    "progress": p.Progress("r-1", 331.5, 1200, 0.25, 40.0, 8.3, 3.5e6, -1e-9, 4021, (60, 100), 86.5),
+    "water_budget": p.WaterBudget(
+        "r-1",
+        331.5,
+        initial=1000.0,
+        stored=1500.0,
+        inflow=900.0,
+        outflow=300.0,
+        rain=10.0,
+        infiltration=110.0,
+        edits=0.0,
+        error=1e-6,
+        error_relative=5e-10,
+        sources={"spring": 400.0},
+        edges_in={"west-1": 450.0},
+        edges_out={"west-1": 0.0, "east-1": 300.0},
+        structures={"pump": -50.0},
+        moved={"culvert": 12.5},
+    ),
+    "run_removed": p.RunRemoved("r-2"),
+    "control_changed": p.ControlChanged("r-1", "c0ffee", "fev-viewer 0.1.0"),
+    "control_requested": p.ControlRequested("r-1", "decaf", "fev-viewer 0.1.0"),
     "notice": p.Notice("warning", "The disk is nearly full.", "r-1"),
 }
 

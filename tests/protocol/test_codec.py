@@ -99,6 +99,22 @@ def test_golden_bytes_can_be_read(name: str) -> None:
     assert unpack(name, read_hex(name)) == EXAMPLES[name]
 
 
+@pytest.mark.parametrize("name", sorted(path.stem for path in (FOLDER / "older").glob("*.hex")))
+def test_bytes_of_an_older_peer_can_be_read_and_what_they_lack_has_its_default(name: str) -> None:
+    older = msgpack.unpackb(read_hex(f"older/{name}"))
+    known = msgspec.to_builtins(unpack(name, read_hex(f"older/{name}")))
+    assert _without_later_fields(known, older) == older
+    assert known != older
+
+
+def _without_later_fields(known: Any, older: Any) -> Any:
+    if isinstance(older, dict):
+        return {key: _without_later_fields(known[key], older[key]) for key in older}
+    if isinstance(older, list):
+        return [_without_later_fields(a, b) for a, b in zip(known, older, strict=True)]
+    return list(known) if isinstance(known, tuple) else known
+
+
 def test_golden_files_belong_to_examples() -> None:
     assert {path.stem for path in FOLDER.glob("*.hex")} == set(EXAMPLES)
 

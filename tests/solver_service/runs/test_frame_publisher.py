@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from protocol import BlockLayout, FrameDecoder, peek_frame
+from solver_service.errors import StoreError, StoreFull
 from solver_service.runs.frame_publisher import FramePublisher, QuantisedFrame
 from solver_service.runs.worker_messages import FrameStored
 from solver_service.store import DataFolder, FrameReader, RunDatabase, RunRecord
@@ -23,11 +24,11 @@ class Desk:
         self.folder = DataFolder(root)
         self.database = RunDatabase(self.folder.database)
         self.stored: queue.Queue[FrameStored] = queue.Queue()
-        self.trouble: queue.Queue[str] = queue.Queue()
+        self.trouble: queue.Queue[StoreError] = queue.Queue()
         epoch = self.database.begin_epoch()
         self.database.insert_run(RUN)
         self.publisher = FramePublisher(
-            self.folder, epoch, self.stored.put, lambda run, message: self.trouble.put(message)
+            self.folder, epoch, self.stored.put, lambda run, error: self.trouble.put(error)
         )
 
 
@@ -75,7 +76,9 @@ def test_on_a_full_disk_the_frame_stays_in_hand_and_is_stored_when_there_is_spac
 
     monkeypatch.setattr("solver_service.store.frame_files.os.write", no_space)
     desk.publisher.publish(frame(1, rng))
-    assert "No space left on device" in desk.trouble.get(timeout=5.0)
+    trouble = desk.trouble.get(timeout=5.0)
+    assert isinstance(trouble, StoreFull)
+    assert "No space left on device" in str(trouble)
     assert [row.index for row in desk.database.frames("r1")] == [0]
     desk.publisher.retry()
     desk.trouble.get(timeout=5.0)

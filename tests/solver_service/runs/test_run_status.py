@@ -3,29 +3,30 @@ import itertools
 import pytest
 
 from solver_service.errors import RunError
-from solver_service.runs.run_status import ACTIVE, LEGAL_MOVES, RunStatus, check_move
+from solver_service.runs.run_status import ACTIVE, RULES, Move, RunStatus, check_move
 
 
-def test_every_status_has_its_moves_in_the_table() -> None:
-    assert set(LEGAL_MOVES) == set(RunStatus)
+def test_every_move_has_its_rule_in_the_table() -> None:
+    assert set(RULES) == set(Move)
 
 
-@pytest.mark.parametrize(("status", "wanted"), list(itertools.product(RunStatus, RunStatus)))
-def test_a_move_is_refused_exactly_when_the_table_does_not_hold_it(
-    status: RunStatus, wanted: RunStatus
-) -> None:
-    if wanted in LEGAL_MOVES[status]:
-        check_move("r1", status, wanted)
+@pytest.mark.parametrize(("status", "move"), list(itertools.product(RunStatus, Move)))
+def test_a_move_is_refused_exactly_when_the_table_does_not_hold_it(status: RunStatus, move: Move) -> None:
+    rule = RULES[move]
+    if status in rule.sources:
+        assert check_move("r1", status, move) is (rule.target or status)
     else:
-        with pytest.raises(RunError, match=f"run r1 is {status.value} and cannot be "):
-            check_move("r1", status, wanted)
+        with pytest.raises(RunError, match=f"run r1 is {status.value} and cannot be {rule.verb}; it can"):
+            check_move("r1", status, move)
 
 
-def test_what_has_ended_never_changes() -> None:
-    assert not LEGAL_MOVES[RunStatus.FINISHED]
-    assert not LEGAL_MOVES[RunStatus.STOPPED]
+def test_what_has_ended_never_changes_its_status() -> None:
+    for status in (RunStatus.FINISHED, RunStatus.STOPPED):
+        assert {RULES[move].target for move in Move if status in RULES[move].sources} == {None}
 
 
-def test_a_run_that_computes_can_always_be_paused_stopped_or_fail() -> None:
+def test_a_run_that_computes_can_always_be_paused_stopped_or_fail_but_not_deleted() -> None:
     for status in ACTIVE:
-        assert {RunStatus.PAUSED, RunStatus.STOPPED, RunStatus.FAILED} <= LEGAL_MOVES[status]
+        legal = {move for move in Move if status in RULES[move].sources}
+        assert {Move.PAUSE, Move.STOP, Move.FAIL, Move.RESTART} <= legal
+        assert Move.DELETE not in legal
