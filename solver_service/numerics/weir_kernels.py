@@ -31,7 +31,7 @@ from solver_service.numerics.conservative_update import arrival_time, update_cel
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.reconstruction import prediction
-from solver_service.numerics.riemann import FACE_TOLERANCE, face_flux
+from solver_service.numerics.riemann import FACE_TOLERANCE
 from solver_service.numerics.step_kernels import flux_x, flux_y, predict_at
 from solver_service.numerics.warp_modules import STRUCTURE_MODULE
 
@@ -55,9 +55,9 @@ KEPT_LENGTH = wp.constant(8)
 LOW_SILL = wp.constant(0.2)
 """Height of a wall, in units of the deeper water, below which its hindrance fades [1]."""
 
-side = wp.types.vector(length=9, dtype=wp.float32)
+side = wp.types.vector(length=8, dtype=wp.float32)
 """Depth, normal and tangential velocity and bed offset at the face, celerity, centre depth, outflow caps
-through a face on the right and on the left, unused."""
+through a face on the right and on the left."""
 
 
 @wp.func
@@ -79,8 +79,19 @@ def side_state(p: prediction, h: float, u: float, v: float, is_x: bool, way: flo
     rightward = p[12] * (d * wp.max(n + p[11], 0.0))
     leftward = p[12] * (d * wp.max(p[11] - n, 0.0))
     if is_between:
-        return side(h, n_cell, t_cell, 0.0, p[11], p[0], rightward, leftward, 0.0)
-    return side(d, n, t, offset, p[11], p[0], rightward, leftward, 0.0)
+        return side(h, n_cell, t_cell, 0.0, p[11], p[0], rightward, leftward)
+    return side(d, n, t, offset, p[11], p[0], rightward, leftward)
+
+
+@wp.func
+def constant_state(h: float, u: float, c: float) -> prediction:
+    """A cell without slopes that moves along x and may give all it has."""
+    p = prediction()
+    p[0] = h
+    p[1] = u
+    p[11] = c
+    p[12] = 1.0
+    return p
 
 
 @wp.func
@@ -88,11 +99,7 @@ def level_flux(
     h_l: float, u_l: float, c_l: float, h_r: float, u_r: float, c_r: float, dt_dx: float
 ) -> wp.vec4:
     """Flux between two constant states over a level bed."""
-    return face_flux(
-        h_l, 0.0, u_l, 0.0, 0.0, 0.0, 0.0, c_l, 1.0,
-        h_r, 0.0, u_r, 0.0, 0.0, 0.0, 0.0, c_r, 1.0,
-        0.0, dt_dx, 1.0,
-    )  # fmt: skip
+    return flux_x(constant_state(h_l, u_l, c_l), constant_state(h_r, u_r, c_r), 0.0, dt_dx, 1.0)
 
 
 @wp.func

@@ -197,7 +197,7 @@ def wild(engine, threads=1, weirs=True, **scheme):
 
 
 def test_every_engine_gives_the_same_bits_with_walls():
-    runs = [wild("kernels"), wild("rows"), wild("rows", threads=3)]
+    runs = [wild("kernels"), wild("tiles"), wild("rows"), wild("rows", threads=3)]
     for s in runs:
         s.advance_to(1.1)
         s.advance_to(6.0)
