@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver_service.numerics import ShallowWaterSolver, pick_device
+from solver_service.numerics.allocation import MemoryOptions, allocation_table, device_bytes
+from solver_service.numerics.device import thread_count
 from solver_service.numerics.snapping import NORTH_FACE
 from solver_service.numerics.structures import Weir
 from solver_service.offline.case_features import case_features
@@ -16,6 +18,8 @@ from solver_service.scenario import Case
 
 PROBE_S = 2.0
 """Wall time for which the solver is tried [s]."""
+CARD = 24e9
+"""Memory of a common graphics card [bytes]."""
 DEEP_PIT = 5.0
 """A single cell this much lower than all its neighbours [m] is told as odd."""
 
@@ -49,7 +53,9 @@ def check_case(case: Case, device: str = "auto") -> CaseReport:
     _look_at_ground(case, report)
     _look_at_water(case, report)
     _look_at_structures(case, report)
-    _try_solver(case, pick_device(device), report)
+    chosen = pick_device(device)
+    _look_at_memory(case, chosen, report)
+    _try_solver(case, chosen, report)
     return report
 
 
@@ -161,21 +167,45 @@ def _rain(case: Case) -> str:
     return f"up to {rain.rates.max() * 3.6e6:.4g} mm/h, {depth * 1e3:.4g} mm in all, {cells}"
 
 
-def _try_solver(case: Case, device: str, report: CaseReport) -> None:
-    import psutil
+def _look_at_memory(case: Case, device: str, report: CaseReport) -> None:
+    options = MemoryOptions.of(case.model, case.params, thread_count(case.params.threads))
+    table = allocation_table(case.grid.shape, options, device)
+    on_card = allocation_table(case.grid.shape, options, "cuda:0")
+    total, share = device_bytes(table, device), device_bytes(on_card, "cuda:0") / CARD
+    report.facts.append(
+        ("memory", f"{_size(total)} on {device}, {total / case.grid.cell_count:.1f} B a cell:")
+    )
+    for line in table:
+        where = "" if line.is_on_device or device == "cpu" else ", on the host"
+        report.facts.append(("", f"{line.bytes_per_cell:6.1f} B a cell  {line.name}{where}"))
+    fits = (
+        f"{100.0 * share:.2g} % of it"
+        if share <= 1.0
+        else f"this case does not fit, it takes {share:.1f} times that"
+    )
+    most = case.grid.cell_count / share / 1e6
+    report.facts.append(("a card of 24 GB", f"{fits}; such a case fits up to {most:.0f} million cells"))
+    report.figures.update(memory_bytes=total, card_24_gb_share=share, device=device)
 
-    process = psutil.Process()
-    before = process.memory_info().rss
+
+def _size(nbytes: int) -> str:
+    return f"{nbytes / 2**30:.1f} GiB" if nbytes >= 2**30 else f"{nbytes / 2**20:.1f} MiB"
+
+
+def _try_solver(case: Case, device: str, report: CaseReport) -> None:
     solver = ShallowWaterSolver(case.model, case.params, device)
     solver.set_water(case.initial_h)
     solver.advance_to(min(1e-3, case.duration))
     began, start = clock.perf_counter(), solver.time
     solver.advance_to(case.duration, lambda: clock.perf_counter() - began > PROBE_S)
     wall, simulated = clock.perf_counter() - began, solver.time - start
-    memory = max(process.memory_info().rss - before, 0)
     estimate = wall * case.duration / simulated if simulated > 0.0 else float("inf")
-    report.facts += [
-        ("memory of the solver", f"about {memory / 2**20:.0f} MiB on {device}"),
-        ("time to run", f"about {estimate:.3g} s, judged by the first {simulated:.1f} s of the flood"),
-    ]
-    report.figures.update(memory_bytes=memory, run_time_s=estimate, device=device)
+    report.facts.append(
+        ("time to run", f"about {estimate:.3g} s, judged by the first {simulated:.1f} s of the flood")
+    )
+    report.figures["run_time_s"] = estimate
+    if solver.wet_cells:
+        row, col = solver.limiting_cell()
+        x, y = case.grid.center(row, col)
+        place = f"cell (row {row}, column {col}) at x {x:.10g}, y {y:.10g} m"
+        report.facts.append(("time step", f"limited by {place} then"))

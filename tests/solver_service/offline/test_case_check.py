@@ -99,3 +99,16 @@ def test_structures_that_do_nothing_are_told(tmp_path: Path) -> None:
         "The weir 'low' lies below the ground everywhere: it does nothing.",
         "The ground of the breach 'to 309.0' lies below its bottom level: it does nothing.",
     ]
+
+
+def test_memory_is_told_line_by_line_and_for_a_card_of_24_gb(tmp_path: Path) -> None:
+    case = load_case(write_case(tmp_path, CASE + "arrival_depths = [0.5]\n"))
+
+    report = check_case(case, "cpu")
+
+    facts = "\n".join(f"{label}: {value}" for label, value in report.facts)
+    assert "water, two states" in facts
+    assert "arrival by depth class" in facts
+    assert 40 * 960 < report.figures["memory_bytes"] < 10_000_000
+    assert 0.0 < report.figures["card_24_gb_share"] < 1e-3
+    assert "such a case fits up to" in dict(report.facts)["a card of 24 GB"]
