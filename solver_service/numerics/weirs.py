@@ -73,6 +73,10 @@ class Weirs:
         self._between = self._to_device(between, wp.int32)
         kept = (len(sides), int(KEPT_LENGTH) + len(store.arrival_depths))
         self._kept = wp.zeros(kept, dtype=wp.float32, device=store.device)
+        self.numbers = {face: number for number, face in enumerate(walls)}
+        """Number of the wall at each face (row, column, side)."""
+        self.moved = wp.zeros(len(walls), dtype=wp.float32, device=store.device)
+        """Depth that has passed each wall eastwards or northwards in the last step [m]."""
 
     def _to_device(self, values: npt.NDArray, dtype: type) -> wp.array:
         return wp.array(values, dtype=dtype, device=self._store.device)
@@ -128,7 +132,7 @@ class Weirs:
                 self._coefficients,
                 self._between,
             ],
-            outputs=[self._kept],
+            outputs=[self._kept, self.moved],
             device=self._store.device,
         )
 

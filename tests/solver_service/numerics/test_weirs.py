@@ -95,28 +95,28 @@ def test_a_lake_over_a_drowned_wall_rests():
     assert all(not component.any() for component in s.velocity())
 
 
-def channel(weir, discharge, stage, time=2500.0):
-    """Heads above the crest on both sides of a wall across a channel in steady flow, and the discharge."""
-    shape = (4, 80)
+def channel(weir, discharge, stage):
+    """Heads above the crest on both sides of a wall across a channel in steady flow."""
+    shape = (2, 40)
     crest = weir.crest
     boundaries = (
-        EdgeBoundary("west", "discharge", 0, 4, times=[0.0], values=[discharge * 4 * DX]),
-        EdgeBoundary("east", "stage", 0, 4, times=[0.0], values=[stage]),
+        EdgeBoundary("west", "discharge", 0, 2, times=[0.0], values=[discharge * 2 * DX]),
+        EdgeBoundary("east", "stage", 0, 2, times=[0.0], values=[stage]),
     )
-    s = solver(weir, z=np.zeros(shape, np.float32), boundaries=boundaries, manning_n=0.02)
-    s.set_water(halves(max(crest + 0.5, stage), stage, col=40, shape=shape))
-    s.advance_to(time)
+    s = solver(weir, z=np.zeros(shape, np.float32), boundaries=boundaries, manning_n=0.03)
+    s.set_water(halves(max(crest + 0.5, stage), stage, col=20, shape=shape))
+    s.advance_to(1200.0)
     eta = s.depth() + s.bed
     u = s.velocity()[0]
-    steady = np.abs((s.depth() * u)[:, 5:75] - discharge).max()
+    steady = np.abs((s.depth() * u)[:, 5:35] - discharge).max()
     assert steady < 0.01 * discharge
     assert abs(s.budget().error_relative) < 1e-6
-    return float(eta[:, 39].mean()) - crest, float(eta[:, 40].mean()) - crest
+    return float(eta[:, 19].mean()) - crest, float(eta[:, 20].mean()) - crest
 
 
 @pytest.mark.parametrize("coefficient", [1.7, 1.4])
 def test_free_overflow_in_steady_flow_follows_poleni(coefficient):
-    weir = Weir("wall", ((39.5, -0.5), (39.5, 3.5)), 2.0, coefficient)
+    weir = Weir("wall", ((19.5, -0.5), (19.5, 1.5)), 2.0, coefficient)
     up, down = channel(weir, 1.0, 1.0)
     assert down < 0.0
     assert coefficient * up**1.5 == pytest.approx(1.0, rel=0.02)
@@ -124,7 +124,7 @@ def test_free_overflow_in_steady_flow_follows_poleni(coefficient):
 
 @pytest.mark.parametrize("stage", [2.45, 2.6, 2.9])
 def test_drowned_overflow_in_steady_flow_follows_villemonte(stage):
-    weir = Weir("wall", ((39.5, -0.5), (39.5, 3.5)), 2.0)
+    weir = Weir("wall", ((19.5, -0.5), (19.5, 1.5)), 2.0)
     up, down = channel(weir, 1.0, stage)
     assert 0.5 < down / up < 0.9
     assert 1.7 * up**1.5 * (1.0 - (down / up) ** 1.5) ** 0.385 == pytest.approx(1.0, rel=0.02)
@@ -133,10 +133,10 @@ def test_drowned_overflow_in_steady_flow_follows_villemonte(stage):
 
 
 def test_a_deeply_drowned_sill_hardly_hinders_the_flow():
-    weir = Weir("sill", ((39.5, -0.5), (39.5, 3.5)), 0.2)
+    weir = Weir("sill", ((19.5, -0.5), (19.5, 1.5)), 0.2)
     up, down = channel(weir, 2.0, 3.0)
     assert 0.0 < up - down < 0.03
-    buried = Weir("buried", ((39.5, -0.5), (39.5, 3.5)), -0.2)
+    buried = Weir("buried", ((19.5, -0.5), (19.5, 1.5)), -0.2)
     up, down = channel(buried, 2.0, 3.2)
     assert abs(up - down) < 2e-3
 
@@ -248,5 +248,6 @@ def test_the_courant_condition_holds_beside_walls():
     s = wild("rows")
     for time in np.arange(0.1, 6.0, 0.1):
         s.advance_to(float(time))
-        wave = float(s._wave_speeds().max())
+        (u, v), c = s.velocity(), np.sqrt(9.81 * s.depth())
+        wave = float((np.maximum(np.abs(u), np.abs(v)) + c).max())
         assert wave <= 1.15 * s._engine.wave_speed + 0.5
