@@ -248,7 +248,6 @@ def step_beside_weirs(
     between: wp.array(dtype=wp.int32),
     # outputs
     kept: wp.array2d(dtype=wp.float32),
-    moved: wp.array(dtype=wp.float32),
 ):
     """Step the cells beside walls anew; those in tiles that sleep stay.
 
@@ -262,7 +261,6 @@ def step_beside_weirs(
         coefficients: C of each wall [m^0.5/s].
         between: bits of each wall, see the constants.
         kept: maxima before the step, [cells, 8 + depth classes]; afterwards those after it.
-        moved: depth that has passed each wall eastwards or northwards in the step [m].
     """
     c = wp.tid()
     dt = wp.float32(clock[CLOCK_DT])
@@ -274,10 +272,6 @@ def step_beside_weirs(
     north = cells[c, NORTH]
     south = cells[c, SOUTH]
     if dt <= 0.0 or active[cells[c, TILE_NUMBER]] == 0:
-        if east >= 0:
-            moved[east] = 0.0
-        if north >= 0:
-            moved[north] = 0.0
         return
     half_dt = 0.5 * dt
     r = dt / s.dx
@@ -290,10 +284,6 @@ def step_beside_weirs(
     w = side_flux(f, s, p_w, p, i, j - 1, True, west, crests, coefficients, between, r)
     n = side_flux(f, s, p, p_n, i, j, False, north, crests, coefficients, between, r)
     b = side_flux(f, s, p_s, p, i - 1, j, False, south, crests, coefficients, between, r)
-    if east >= 0:
-        moved[east] = e[0]
-    if north >= 0:
-        moved[north] = n[0]
     e_x = wp.where(east >= 0 and west >= 0, 0.0, p[3] + p[6])
     e_y = wp.where(north >= 0 and south >= 0, 0.0, p[7] + p[10])
     q = update_cell(

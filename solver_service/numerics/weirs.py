@@ -73,10 +73,6 @@ class Weirs:
         self._between = self._to_device(between, wp.int32)
         kept = (len(sides), int(KEPT_LENGTH) + len(store.arrival_depths))
         self._kept = wp.zeros(kept, dtype=wp.float32, device=store.device)
-        self.numbers = {face: number for number, face in enumerate(walls)}
-        """Number of the wall at each face (row, column, side)."""
-        self.moved = wp.zeros(len(walls), dtype=wp.float32, device=store.device)
-        """Depth that has passed each wall eastwards or northwards in the last step [m]."""
 
     def _to_device(self, values: npt.NDArray, dtype: type) -> wp.array:
         return wp.array(values, dtype=dtype, device=self._store.device)
@@ -132,7 +128,7 @@ class Weirs:
                 self._coefficients,
                 self._between,
             ],
-            outputs=[self._kept, self.moved],
+            outputs=[self._kept],
             device=self._store.device,
         )
 
