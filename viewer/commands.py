@@ -21,6 +21,7 @@ __all__ = [
     "ChangeEditSettings",
     "Command",
     "CommandError",
+    "CompareWith",
     "DragOrbit",
     "DragPan",
     "FinishEdit",
@@ -108,6 +109,13 @@ class SelectRun:
     """Show another run of the service."""
 
     run: str
+
+
+@dataclass(frozen=True)
+class CompareWith:
+    """Colour the picture by the difference to another run at the same time; None ends the comparison."""
+
+    run: str | None = None
 
 
 @dataclass(frozen=True)
@@ -301,6 +309,7 @@ Command = (
     | FollowLive
     | StartRun
     | SelectRun
+    | CompareWith
     | PauseRun
     | ResumeRun
     | StopRun

@@ -113,6 +113,7 @@ class ViewStatus:
     cases: tuple[CaseRow, ...] = ()
     runs: tuple[RunRow, ...] = ()
     shown_run: str | None = None
+    compared_run: str | None = None
     title: str = ""
     hypothetical: bool = False
     has_terrain: bool = False

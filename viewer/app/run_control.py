@@ -147,6 +147,11 @@ class RunControl:
         if self.shown is not None and self.desk.is_open:
             self.desk.seek(self.shown.run, index)
 
+    def resubscribe(self) -> None:
+        """Let the stream serve the shown run."""
+        if self.shown is not None:
+            self._subscribe(self.shown)
+
     # --- what the service says ----------------------------------------------------------------------
 
     def connection_opened(self) -> None:
@@ -203,9 +208,11 @@ class RunControl:
             return
         if frame.run == shown.run:
             shown.info = self.desk.book.runs[shown.run]
-        if shown.note_frame((frame.run, frame.index)):
-            self.is_stale = True
+        is_ours = shown.note_frame((frame.run, frame.index))
         shown.discard_frames(frame.run, gone)
+        if not is_ours:
+            return  # of a run that it is compared with
+        self.is_stale = True
         self.desk.connection.resume_point = protocol.ResumePoint(
             shown.run, frame.index, shown.document.revision
         )

@@ -24,6 +24,7 @@ from viewer.commands import (
     AddVertex,
     BeginEdit,
     ChangeEditSettings,
+    CompareWith,
     FinishEdit,
     FlyTo,
     Pause,
@@ -103,17 +104,21 @@ def fly_tour(session: HeadlessSession, started: float, settings: TourSettings | 
     app.carry_out(Pause())
     app.carry_out(Seek(compared_at))
     after = session.picture(f"09_with_levee_{_stamp(compared_at)}.png")
+    app.carry_out(CompareWith(first_run))
+    session.pump(lambda: app.comparison.difference is not None, "the difference to the first run", 30.0)
+    session.picture(f"10_difference_{_stamp(compared_at)}.png")
+    app.carry_out(CompareWith(None))
     _top_view(session)
-    session.picture("10_top_view_depth_classes.png")
+    session.picture("11_top_view_depth_classes.png")
     app.carry_out(PauseRun())
     names = session.pictures
     side_by_side(
-        session.folder / names[-5],
-        session.folder / names[-2],
+        session.folder / names[-6],
+        session.folder / names[-3],
         ("without the levee", "with the levee"),
-        session.folder / "11_before_and_after.png",
+        session.folder / "12_before_and_after.png",
     )
-    session.pictures.append("11_before_and_after.png")
+    session.pictures.append("12_before_and_after.png")
     summary = summarise(app, session, first_run, started)
     summary.changed_share = _changed_share(before, after)
     make_contact_sheet(

@@ -12,6 +12,7 @@ import time as wall_clock
 
 import protocol
 from viewer.app.camera_work import CameraWork
+from viewer.app.comparison import Comparison
 from viewer.app.levee_watch import LeveeWatch
 from viewer.app.map_maker import MapMaker
 from viewer.app.picture_text import edit_overlay, hud_text, loss_notice
@@ -25,6 +26,7 @@ from viewer.app.water_feed import WaterFeed
 from viewer.commands import (
     Command,
     CommandError,
+    CompareWith,
     FlyTo,
     FollowLive,
     MoveHover,
@@ -108,6 +110,7 @@ class ViewerApp:
         self._status = ViewStatus()
         self._map_maker = MapMaker()
         self._levee_watch = LeveeWatch()
+        self.comparison = Comparison(self.desk, loader, self.feed, self.control.resubscribe)
 
     @property
     def desk(self) -> ServiceDesk:
@@ -167,9 +170,12 @@ class ViewerApp:
                 self.control.start_run(command)
             case SelectRun(run):
                 self.control.select_run(run)
+            case CompareWith(run):
+                self.comparison.begin(self.control.require_run(), run)
             case PauseRun(run):
                 self.desk.pause_run(run or self.control.require_run().run)
             case ResumeRun(run):
+                self.comparison.return_stream()
                 self.desk.resume_run(run or self.control.require_run().run)
             case StopRun(run):
                 self.desk.stop_run(run or self.control.require_run().run)
@@ -203,6 +209,7 @@ class ViewerApp:
         connected_before = self._status.is_connected
         for frame in self.desk.drain():
             self.control.take_frame(frame)
+            self.comparison.take_frame(frame)
         if self.desk.is_open != connected_before or not self.desk.is_open:
             self._status_stale = True
         self._picture_stale |= self.desk.is_open != connected_before
@@ -217,6 +224,7 @@ class ViewerApp:
             changed |= self._advance_clock(shown, wall_dt)
             if not self.control.is_held:
                 changed |= self.feed.advance(shown, self.clock.time)
+            changed |= self.comparison.advance(shown)
             self._status_stale |= self._levee_watch.look(shown, self.feed, self.options.depth_shown)
         if changed:
             self._status_stale = True
@@ -278,6 +286,7 @@ class ViewerApp:
             edits=edit_overlay(self.shown, self.control.editing.drawing),
             options=self.options,
             hud=self._drawn_text,
+            difference=self.comparison.difference,
             is_outdated=not self.desk.is_open,
         )
 
@@ -357,6 +366,7 @@ class ViewerApp:
             return status
         return dataclasses.replace(
             run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch),
+            compared_run=None if self.comparison.other is None else self.comparison.other.run,
             hover=point_readout(self.shown, self.feed, self._hover_at),
             probe=point_readout(self.shown, self.feed, self._probe_at),
             depth_record=depth_record(self.shown, self.loader) if self._probe_at is not None else ((), ()),

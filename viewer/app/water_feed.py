@@ -33,6 +33,7 @@ class WaterFeed:
     Attributes:
         pair: the water on the picture, None before the first frame.
         keys: the frames of `pair`.
+        also_wanted: frames that something else needs at the same time.
     """
 
     def __init__(self, loader: FrameLoader, book: RunBook, request: Callable[[int], None]) -> None:
@@ -43,6 +44,7 @@ class WaterFeed:
         self._beds: dict[Hashable, npt.NDArray[np.float32]] = {}
         self.pair: WaterPair | None = None
         self.keys: tuple[FrameKey, FrameKey] | None = None
+        self.also_wanted: tuple[FrameKey, ...] = ()
 
     def forget(self) -> None:
         """Show no water: another terrain is shown."""
@@ -67,7 +69,7 @@ class WaterFeed:
         keys, alpha = self.wanted(shown, time)
         if not keys:
             return False
-        self._loader.want(list(dict.fromkeys(keys)))
+        self._loader.want(list(dict.fromkeys([*keys[:2], *self.also_wanted, *keys[2:]])))
         first, second = self._loader.get(keys[0]), self._loader.get(keys[1])
         if first is None or second is None:
             return False

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from viewer.commands import PauseRun, ResumeRun, SelectRun, StartRun, StopRun
+from viewer.commands import CompareWith, PauseRun, ResumeRun, SelectRun, StartRun, StopRun
 from viewer.gui.conductor import Dispatch
 from viewer.view_status import CaseRow, RunRow, ViewStatus, time_text
 
@@ -68,6 +68,10 @@ class RunPanel(QWidget):
         self.pause = self._button("Pause", "Hold the computation of the shown run", PauseRun())
         self.resume = self._button("Resume", "Let the computation of the shown run go on", ResumeRun())
         self.stop = self._button("Stop", "End the computation of the shown run; its frames stay", StopRun())
+        self.compare = QComboBox()
+        self.compare.setAccessibleName("Compare with")
+        self.compare.setToolTip("Colour the picture by how much deeper or shallower the water is than there")
+        self.compare.activated.connect(lambda row: dispatch(CompareWith(self.compare.itemData(row))))
         self._lay_out()
 
     def show_status(self, status: ViewStatus) -> None:
@@ -85,10 +89,24 @@ class RunPanel(QWidget):
             self._runs = status.runs
             self._show_runs(status.runs)
         self._mark_shown(status.shown_run)
+        self._show_comparison(status)
         shown = next((row for row in status.runs if row.run == status.shown_run), None)
         self.pause.setEnabled(shown is not None and shown.status in ("running", "starting"))
         self.resume.setEnabled(shown is not None and shown.status == "paused")
         self.stop.setEnabled(shown is not None and shown.status in ("running", "starting", "paused"))
+
+    def _show_comparison(self, status: ViewStatus) -> None:
+        shown = next((row for row in status.runs if row.run == status.shown_run), None)
+        others = [] if shown is None else [row for row in status.runs if row.case == shown.case]
+        choices: list[tuple[str, str | None]] = [("nothing", None)]
+        choices += [(_run_name(row), row.run) for row in others if row is not shown]
+        box = self.compare
+        if choices != [(box.itemText(k), box.itemData(k)) for k in range(box.count())]:
+            self.compare.clear()
+            for text, run in choices:
+                self.compare.addItem(text, run)
+        self.compare.setCurrentIndex(max(0, self.compare.findData(status.compared_run)))
+        self.compare.setEnabled(len(choices) > 1)
 
     def choose_case(self, name: str) -> None:
         """Select the case called `name`, if the service offers it."""
@@ -180,6 +198,14 @@ class RunPanel(QWidget):
         layout.addWidget(self.start)
         layout.addWidget(self.tree, 1)
         layout.addLayout(control)
+        comparing = QFormLayout()
+        comparing.addRow("Compare with", self.compare)
+        layout.addLayout(comparing)
+
+
+def _run_name(row: RunRow) -> str:
+    started = "from the start" if row.branch_time is None else f"from {time_text(row.branch_time)}"
+    return f"{row.case} {started} ({row.run[:6]})"
 
 
 def _minutes(name: str, longest: float) -> QDoubleSpinBox:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from viewer.world.camera import Camera
 
 __all__ = [
+    "DepthDifference",
     "DrapedLine",
     "EditOverlay",
     "FrameInputs",
@@ -90,6 +91,18 @@ class EditOverlay:
     sign: npt.NDArray[np.int8]
     """+1 raised, -1 lowered, 0 untouched, shape [nrows, ncols]."""
     lines: tuple[DrapedLine, ...] = ()
+
+
+@dataclass(frozen=True)
+class DepthDifference:
+    """How much deeper the water is than in another run at the same time."""
+
+    key: Hashable
+    """Names this difference: equal keys mean equal arrays, which are then uploaded once."""
+    metres: npt.NDArray[np.float32]
+    """Depth here less depth there [m], shape [nrows, ncols]."""
+    other: str
+    """The other run in words, for the legend."""
 
 
 @dataclass(frozen=True)
@@ -174,6 +187,8 @@ class FrameInputs:
     edits: EditOverlay | None = None
     options: RenderOptions = field(default_factory=RenderOptions)
     hud: HudText | None = None
+    difference: DepthDifference | None = None
+    """Colours ground and water by the difference to another run."""
     is_outdated: bool = False
     """The flood may have gone on unseen, say since the service is gone: the scene is drawn in grey."""
 

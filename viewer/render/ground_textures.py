@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from viewer.errors import TerrainDataError
+from viewer.render.difference_texture import DifferenceTexture
 from viewer.render.frame_inputs import EditOverlay, same_marks
 from viewer.render.shader_library import build_program, set_uniforms
 from viewer.world.heightfield import Heightfield, Rect
@@ -69,6 +70,7 @@ class GroundTextures:
         self.mask.repeat_x = self.mask.repeat_y = False
         self._edits: EditOverlay | None = None
         self._detail = _detail_texture(ctx)
+        self.difference = DifferenceTexture(ctx, (nrows, ncols))
 
         scale = 1.0
         if self._imagery is not None:
@@ -107,16 +109,17 @@ class GroundTextures:
         return dirty
 
     def bind(self, program: moderngl.Program) -> None:
-        """Bind the textures of `shaders/common/ground.glsl` and the heights to units 0 to 3."""
+        """Bind what `shaders/common/ground.glsl` and `difference.glsl` ask for, and the heights."""
         textures = (self.height, self.colour, self.mask, self._detail)
         for unit, (name, texture) in enumerate(zip(_SAMPLERS, textures, strict=True)):
             texture.use(unit)
             set_uniforms(program, **{name: unit})
         set_uniforms(program, has_edits=int(self._edits is not None))
+        self.difference.bind(program)
 
     def release(self) -> None:
         """Give the memory back."""
-        textures = (self.colour, self.mask, self.height, self._detail, self._imagery)
+        textures = (self.colour, self.mask, self.height, self._detail, self._imagery, self.difference)
         for thing in (self._array, self._program, self._target, *textures):
             if thing is not None:
                 thing.release()

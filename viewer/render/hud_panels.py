@@ -12,6 +12,7 @@ from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, depth_class_labels
 __all__ = [
     "banner_panel",
     "depth_ramp_panel",
+    "difference_panel",
     "legend_panel",
     "natural_water_colour",
     "nice_length",
@@ -26,6 +27,15 @@ _MARGIN = 12
 
 NATURAL_RAMP_DEPTHS = (0.0, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
 """Depths marked on the ramp of natural water [m]."""
+
+
+DIFFERENCES = (
+    ("1 m deeper and more", (158, 13, 107)),
+    ("deeper, newly wet", (232, 148, 204)),
+    ("shallower, spared", (179, 222, 128)),
+    ("1 m shallower and more", (46, 120, 18)),
+)
+"""Colours of a comparison between two runs."""
 
 
 @cache
@@ -116,6 +126,21 @@ def depth_ramp_panel(scale: float) -> Image.Image:
         draw.line((x, y, x, y + bar + round(3 * scale)), fill=_SOFT_INK)
         place = (x, y + bar + round(5 * scale))
         draw.text(place, f"{depth:g}", font=_font(round(13 * scale)), fill=_SOFT_INK, anchor="mt")
+    return image
+
+
+def difference_panel(other: str, scale: float) -> Image.Image:
+    """What the colours of a comparison mean, as `shaders/common/difference.glsl` has them."""
+    size, row = round(15 * scale), round(22 * scale)
+    margin, box, gap = round(_MARGIN * scale), round(26 * scale), round(10 * scale)
+    heading = f"Against {other}"
+    width = max(_extent(heading, size)[0], box + gap + max(_extent(text, size)[0] for text, _ in DIFFERENCES))
+    image, draw = _plate(width + 2 * margin, row * (len(DIFFERENCES) + 1) + 2 * margin)
+    draw.text((margin, margin), heading, font=_font(size), fill=_INK)
+    for k, (text, colour) in enumerate(DIFFERENCES, start=1):
+        y = margin + k * row
+        draw.rectangle((margin, y + 2, margin + box, y + row - 3), fill=(*colour, 255))
+        draw.text((margin + box + gap, y), text, font=_font(size), fill=_SOFT_INK)
     return image
 
 

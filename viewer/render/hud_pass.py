@@ -89,6 +89,14 @@ class HudPass:
             texture = self._panel("legend", (by_class, scale), lambda: make(scale))
             self._blit(texture, size, edge, size[1] - texture.height - edge)
             draws += 1
+        if inputs.difference is not None:
+            other = inputs.difference.other
+            texture = self._panel(
+                "difference", (other, scale), lambda: hud_panels.difference_panel(other, scale)
+            )
+            above = self._panels["legend"].texture.height + edge // 2 if "legend" in self._panels else 0
+            self._blit(texture, size, edge, size[1] - texture.height - edge - above)
+            draws += 1
         if hud.scale_and_north:
             metres, bearing = _scale_and_bearing(inputs.camera, size)
             texture = self._panel(

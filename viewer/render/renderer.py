@@ -110,6 +110,7 @@ class Renderer:
         dirty = self._ground.follow(sun, options.show_imagery, inputs.edits)
         if dirty is not None:
             self._lod.refresh(dirty)
+        self._ground.difference.follow(inputs.difference)
         self._lod.follow_edits(inputs.edits)
         self._sky.follow(sun)
         water = inputs.water if options.show_water else None

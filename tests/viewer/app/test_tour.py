@@ -35,7 +35,8 @@ def test_the_tour_ends_with_pictures_and_figures(tmp_path: Path) -> None:
     pictures = summary["pictures"]
 
     assert isinstance(pictures, list)
-    assert len(pictures) >= 8
+    assert len(pictures) >= 9
+    assert any("difference" in name for name in pictures)
     assert all((tmp_path / name).is_file() for name in pictures)
     assert (tmp_path / "contact_sheet.png").is_file()
     assert isinstance(summary["changed_share"], float)

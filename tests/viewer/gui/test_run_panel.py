@@ -1,8 +1,10 @@
+import dataclasses
+
 import pytest
 from pytestqt.qtbot import QtBot
 
 from tests.viewer.gui.conftest import Recorder
-from viewer.commands import PauseRun, ResumeRun, SelectRun, StartRun, StopRun
+from viewer.commands import CompareWith, PauseRun, ResumeRun, SelectRun, StartRun, StopRun
 from viewer.gui.run_panel import RunPanel
 from viewer.view_status import CaseRow, RunRow, ViewStatus
 
@@ -85,3 +87,16 @@ def test_pause_resume_and_stop_fit_the_state_of_the_run(panel: RunPanel, record:
     panel.resume.click()
 
     assert record.commands == [PauseRun(), StopRun(), ResumeRun()]
+
+
+def test_the_other_runs_of_the_case_can_be_compared_with(panel: RunPanel, record: Recorder) -> None:
+    texts = [panel.compare.itemText(row) for row in range(panel.compare.count())]
+    assert texts == ["nothing", "jacksboro from the start (r1)"]
+    panel.compare.activated.emit(1)
+    panel.compare.activated.emit(0)
+
+    assert record.commands == [CompareWith("r1"), CompareWith(None)]
+    panel.show_status(dataclasses.replace(STATUS, compared_run="r1"))
+    assert panel.compare.currentIndex() == 1
+    panel.show_status(dataclasses.replace(STATUS, runs=(ROOT,), shown_run="r1"))
+    assert not panel.compare.isEnabled()

@@ -72,3 +72,12 @@ def test_a_banner_of_two_lines_is_taller_and_as_wide_as_its_longer_line() -> Non
 
     assert two.width == one.width
     assert two.height > 1.5 * one.height
+
+
+def test_the_legend_of_a_comparison_names_the_other_run_and_has_a_box_for_each_colour() -> None:
+    panel = np.asarray(hud_panels.difference_panel("run jacksboro", 1.0))
+    longer = hud_panels.difference_panel("a run with a name that takes more room than the colours", 1.0)
+
+    for _, colour in hud_panels.DIFFERENCES:
+        assert (panel[..., :3] == colour).all(axis=2).sum() > 200
+    assert longer.width > panel.shape[1]

@@ -10,6 +10,7 @@ import pytest
 from tests.viewer.render.views import BARE, INSIDE, VIEWS, magenta_pixels
 from viewer.errors import TerrainDataError
 from viewer.render import (
+    DepthDifference,
     EditOverlay,
     FrameInputs,
     HudText,
@@ -233,3 +234,35 @@ def test_raised_ground_is_warm_and_lowered_ground_is_cool(hilly: Heightfield, ma
     assert left[0] > left[2] + 60.0
     assert right[2] > right[0] + 60.0
     assert np.array_equal(plain, again)
+
+
+def test_a_comparison_colours_ground_and_water_where_the_depths_differ(
+    hilly: Heightfield, make_stage: Callable
+) -> None:
+    stage = make_stage(hilly)
+    shape = hilly.z_b.shape
+    camera = Camera((0.0, 40.0, 0.0), 2500.0, 0.0, math.pi / 2)
+    h = np.zeros(shape, np.float32)
+    h[:, 160:] = 2.0
+    frame = WaterFrame("wet", h)
+    metres = np.zeros(shape, np.float32)
+    metres[40:120, :] = 1.5  # south: deeper here
+    metres[140:220, :] = -1.5  # north: shallower here
+
+    def draw(difference: DepthDifference | None) -> np.ndarray:
+        inputs = FrameInputs(camera, WaterPair(frame, frame), difference=difference)
+        return stage.draw(inputs).astype(int)
+
+    plain, compared = draw(None), draw(DepthDifference("d", metres, "run"))
+    again = draw(None)
+    height, width = plain.shape[:2]
+    north, south = slice(height // 2 - 30, height // 2 - 15), slice(height // 2 + 15, height // 2 + 30)
+    dry, wet = slice(width // 2 - 60, width // 2 - 20), slice(width // 2 + 20, width // 2 + 60)
+
+    assert np.array_equal(plain, again)
+    for cols in (dry, wet):
+        deeper, shallower = compared[south, cols].mean(axis=(0, 1)), compared[north, cols].mean(axis=(0, 1))
+        assert deeper[0] > deeper[1] + 40  # purple
+        assert shallower[1] > shallower[0] + 25  # green
+    unchanged = compared[:8, dry], plain[:8, dry]
+    assert np.abs(unchanged[0] - unchanged[1]).max() <= 2

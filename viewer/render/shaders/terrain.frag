@@ -1,6 +1,7 @@
 #version 410 core
 #include "common/frame.glsl"
 #include "common/ground.glsl"
+#include "common/difference.glsl"
 in vec2 uv;
 in float elevation;
 in float clear_air;
@@ -13,7 +14,7 @@ const vec3 LEVEL_COLOURS[7] = vec3[](
     vec3(0.25, 0.65, 0.85), vec3(0.30, 0.35, 0.80), vec3(0.55, 0.30, 0.70));
 
 void main() {
-    vec3 ground = ground_at(uv, elevation);
+    vec3 ground = with_difference(ground_at(uv, elevation), uv);
     if (picture.w > 0.5) ground = mix(ground, LEVEL_COLOURS[level] * (0.75 + 0.25 * block_shade), 0.55);
     colour = vec4(mix(horizon.rgb, ground, clear_air), 1.0);
 }

@@ -2,6 +2,7 @@
 // Reflection of the sky (Schlick 1994) over ground seen through water that darkens it with depth (Beer and Lambert).
 #include "common/frame.glsl"
 #include "common/ground.glsl"
+#include "common/difference.glsl"
 in vec2 uv;
 in vec3 world;
 in float depth;
@@ -69,5 +70,5 @@ void main() {
         float glint = pow(max(dot(mirror, sun.xyz), 0.0), 400.0) * 0.9 * lively;
         surface = mix(surface, reflected, fresnel * edge) + glint * edge * vec3(1.0, 0.95, 0.85);
     }
-    colour = vec4(mix(horizon.rgb, surface, clear_air), 1.0);
+    colour = vec4(mix(horizon.rgb, with_difference(surface, uv), clear_air), 1.0);
 }
