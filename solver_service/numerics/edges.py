@@ -222,7 +222,7 @@ class Edges:
                 level = soon if b.kind == "stage" else np.interp(soon, discharges[k], levels[k])
                 depth = max(0.0, float(level - levels[k, 0]))
                 fastest = max(fastest, 2.0 * math.sqrt(GRAVITY * depth))
-        return fastest
+        return float(np.float32(fastest))  # in the precision in which every engine keeps it
 
     def fill(
         self, clock: wp.array, fields: Fields, ghosts: wp.array, waves: wp.array, record: bool = False
