@@ -14,6 +14,7 @@ from solver_service.numerics.inflows import Rain, Source
 from solver_service.numerics.maxima import Maxima
 from solver_service.numerics.model import FloodModel
 from solver_service.numerics.params import SolverParams
+from solver_service.numerics.section import Section, SectionProfile, SectionSeries, SectionTotals
 from solver_service.numerics.snapshot import Snapshot
 from solver_service.numerics.solver import ShallowWaterSolver
 from solver_service.numerics.structures import Culvert, Pump, Structure, Weir
@@ -35,6 +36,10 @@ __all__ = [
     "ModelError",
     "Pump",
     "Rain",
+    "Section",
+    "SectionProfile",
+    "SectionSeries",
+    "SectionTotals",
     "ShallowWaterSolver",
     "Snapshot",
     "SolverBlowUp",

@@ -98,7 +98,7 @@ def warm_kernels(device: str = "auto", *, with_oracle: bool = False) -> float:
 
 
 def load_structure_kernels(device: str) -> None:
-    """Compile and load the kernels that only models with structures or breaches need.
+    """Compile and load the kernels that only models with structures, breaches or sections need.
 
     Args:
         device: name of a device that is there.

@@ -10,6 +10,7 @@ from solver_service.numerics.active_tiles import ActiveTiles
 from solver_service.numerics.edges import Edges
 from solver_service.numerics.fields import FieldStore, Scheme
 from solver_service.numerics.gauges import GaugeRecorder
+from solver_service.numerics.section_recorder import SectionRecorder
 from solver_service.numerics.step_part import StepPart
 
 StopQuestion = Callable[[], bool]
@@ -25,6 +26,8 @@ class StepParts:
     after_step: tuple[StepPart, ...]
     """Applied in this order after every flux step."""
     gauges: GaugeRecorder
+    sections: SectionRecorder
+    """Measured after the flux step, before its parts change bed and water."""
     edges: Edges
     courant: float
     """cfl dx [m]."""

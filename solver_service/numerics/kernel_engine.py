@@ -86,7 +86,8 @@ class KernelEngine(Engine):
         self._upload(target)
         self.parts.tiles.begin_interval()
         while self.time < target:
-            limit = self.parts.gauges.steps_with_room(target - self.time)
+            recorders = (self.parts.gauges, self.parts.sections)
+            limit = min(recorder.steps_with_room(target - self.time) for recorder in recorders)
             if should_stop is not None:
                 if should_stop():
                     return False
@@ -96,6 +97,7 @@ class KernelEngine(Engine):
             self._download()
             self._learn(self.step_count - steps, time.perf_counter() - began)
             self.parts.gauges.drain()
+            self.parts.sections.drain()
         return True
 
     def _learn(self, steps: int, seconds: float) -> None:
@@ -171,6 +173,7 @@ class KernelEngine(Engine):
         )
         parts.edges.fill(self._clock, fields, self._ghosts, self._wave_slots)
         self._step_tiles(fields)
+        parts.sections.record(self._clock, fields, parts.scheme)
         for part in parts.after_step:
             part.apply(self._clock, fields)
         parts.gauges.record(self._clock, fields)

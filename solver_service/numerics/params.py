@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from solver_service.errors import ModelError
+from solver_service.numerics.section import Section
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,9 @@ class SolverParams:
     gauges: tuple[tuple[float, float], ...] = ()
     """(column, row) of each gauge in cells from the centre of cell (0, 0); the nearest cell is recorded."""
     gauge_interval: float = 1.0
-    """Time between gauge records [s]."""
+    """Time between records of gauges and sections [s]."""
+    sections: tuple[Section, ...] = ()
+    """Lines through which the discharge is recorded, each id once."""
     engine: Literal["auto", "rows", "tiles", "kernels"] = "auto"
     """`rows` is the SIMD engine of CPUs, `tiles` that of GPUs, `kernels` steps cell by cell on either; all
     give the same bits."""
@@ -62,6 +65,8 @@ class SolverParams:
         self._check("dt_min", 0.0 < self.dt_min < math.inf, "a positive time in s")
         self._check("dt_max", self.dt_max > self.dt_min, "a time in s larger than dt_min")
         self._check("threads", self.threads is None or self.threads >= 1, "None or at least 1")
+        ids = [section.id for section in self.sections]
+        self._check("sections", len(set(ids)) == len(ids), "each id once")
         self._check("gauge_interval", 0.0 < self.gauge_interval < math.inf, "a positive time in s")
         engines = ("auto", "rows", "tiles", "kernels")
         self._check("engine", self.engine in engines, '"auto", "rows", "tiles" or "kernels"')

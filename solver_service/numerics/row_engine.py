@@ -100,6 +100,7 @@ class RowEngine(Engine):
             for _ in range(REFRESH_STEPS):
                 if self.time < target:
                     self._step(target)
+            self.parts.sections.drain()
         return True
 
     def _step(self, target: float) -> None:
@@ -134,12 +135,12 @@ class RowEngine(Engine):
         )
         fields = store.fields[parity]
         store.parity = 1 - parity
-        if parts.after_step or parts.gauges.is_due(after):
-            for part in parts.after_step:
-                part.apply(self._clock, fields)
-            if parts.gauges.is_due(after):
-                parts.gauges.record(self._clock, fields)
-                parts.gauges.drain()
+        parts.sections.record(self._clock, fields, parts.scheme)
+        for part in parts.after_step:
+            part.apply(self._clock, fields)
+        if parts.gauges.is_due(after):
+            parts.gauges.record(self._clock, fields)
+            parts.gauges.drain()
 
     def _refresh(self) -> None:
         """Renew the tile list, and deal the work anew when it changed."""

@@ -183,9 +183,14 @@ def face_chain(vertices: Vertices, shape: tuple[int, int]) -> IntArray:
     Returns:
         Row, column and side of each face, [faces, 3], in the order of the line.
     """
+    return oriented_face_chain(vertices, shape)[0]
+
+
+def oriented_face_chain(vertices: Vertices, shape: tuple[int, int]) -> tuple[IntArray, IntArray]:
+    """The chain of `face_chain`, and for each face 1 when it is walked east or north, else -1."""
     nrows, ncols = shape
     corners = np.clip(np.floor(np.array(vertices) + 1.0), 0, (ncols, nrows)).astype(int)
-    faces: dict[tuple[int, int, int], None] = {}
+    faces: dict[tuple[int, int, int], int] = {}
     for (xa, ya), (xb, yb) in zip(corners[:-1].tolist(), corners[1:].tolist(), strict=True):
         x, y = xa, ya
         step_x, step_y = (1 if xb > xa else -1), (1 if yb > ya else -1)
@@ -195,11 +200,12 @@ def face_chain(vertices: Vertices, shape: tuple[int, int]) -> IntArray:
             if y == yb or (x != xb and off_x <= off_y):
                 west = min(x, x + step_x)
                 if 0 < y < nrows:
-                    faces[(y - 1, west, NORTH_FACE)] = None
+                    faces.setdefault((y - 1, west, NORTH_FACE), step_x)
                 x += step_x
             else:
                 south = min(y, y + step_y)
                 if 0 < x < ncols:
-                    faces[(south, x - 1, EAST_FACE)] = None
+                    faces.setdefault((south, x - 1, EAST_FACE), step_y)
                 y += step_y
-    return np.array(list(faces), np.int32).reshape(-1, 3)
+    chain = np.array(list(faces), np.int32).reshape(-1, 3)
+    return chain, np.array(list(faces.values()), np.int32)

@@ -28,6 +28,8 @@ from solver_service.numerics.maxima import Maxima, begin_maxima, end_wet_spells,
 from solver_service.numerics.model import FloodModel
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.row_engine import RowEngine, rows_compile
+from solver_service.numerics.section import SectionProfile, SectionSeries, SectionTotals
+from solver_service.numerics.section_recorder import SectionRecorder
 from solver_service.numerics.snapshot import Snapshot
 from solver_service.numerics.state_keeping import check_snapshot, put_back, take_snapshot
 from solver_service.numerics.weirs import Weirs
@@ -73,6 +75,8 @@ class ShallowWaterSolver:
         longest = [params.dt_max, params.cfl * model.dx / WAVE_FLOOR]
         self._dt_max = min([*longest, *(part.dt_max for part in self._after_step)])
         self._gauges = GaugeRecorder(params, store, self._dt_max)
+        weirs = next((part for part in self._after_step if isinstance(part, Weirs)), None)
+        self._sections = SectionRecorder(params, store, model.dx, self._dt_max, weirs)
         self._engine = self._choose_engine()
         self._initial_volume = 0.0
         self._edits_volume = 0.0
@@ -109,6 +113,7 @@ class ShallowWaterSolver:
             tiles=self._tiles,
             after_step=self._after_step,
             gauges=self._gauges,
+            sections=self._sections,
             edges=self._edges,
             courant=courant,
             dt_max=self._dt_max,
@@ -158,6 +163,7 @@ class ShallowWaterSolver:
         self._initial_volume = stored_volume(store, self.model.dx)
         self._edits_volume = 0.0
         self._gauges.begin()
+        self._sections.begin()
         self._water_changed()
 
     def _checked(self, what: str, values: npt.ArrayLike) -> FloatRaster:
@@ -299,6 +305,18 @@ class ShallowWaterSolver:
     def gauge_series(self) -> GaugeSeries:
         """What the gauges of the parameters have recorded."""
         return self._gauges.series()
+
+    def section_series(self) -> SectionSeries:
+        """What has passed the sections of the parameters, at the gauge interval."""
+        return self._sections.series()
+
+    def section_totals(self) -> tuple[SectionTotals, ...]:
+        """Volume and peak discharge of each section, from every step."""
+        return self._sections.totals()
+
+    def section_profile(self, number: int) -> SectionProfile:
+        """The water along the section of a number, counted from 0, now."""
+        return self._sections.profile(number)
 
     def quantise(
         self, scale: float, depth_wet: float

@@ -27,6 +27,7 @@ def take_snapshot(engine: Engine, z_b: npt.NDArray, volumes: Mapping[str, float]
     arrays["class_arrival"] = store.read_class_arrival()
     arrays["edge_flow"] = store.edge_flow.numpy().copy()
     arrays["gauge_records"] = parts.gauges.records().copy()
+    arrays |= parts.sections.snapshot()
     for part in parts.after_step:
         arrays |= part.snapshot()
     scalars = {
@@ -51,6 +52,10 @@ def check_snapshot(engine: Engine, snapshot: Snapshot) -> None:
     shapes["class_arrival"] = (len(parts.store.arrival_depths), *shape)
     shapes["edge_flow"] = tuple(parts.store.edge_flow.shape)
     shapes["gauge_records"] = (None, parts.gauges.count, 4)
+    shapes |= {
+        "section_records": (None, parts.sections.count, 3),
+        "section_totals": (parts.sections.count, 3),
+    }
     for part in parts.after_step:
         shapes |= {name: array.shape for name, array in part.snapshot().items()}
     snapshot.check(shapes)
@@ -66,6 +71,7 @@ def put_back(engine: Engine, snapshot: Snapshot) -> None:
     store.write_class_arrival(np.asarray(arrays["class_arrival"], np.float32))
     store.edge_flow.assign(np.asarray(arrays["edge_flow"], np.float64))
     parts.gauges.restore(arrays["gauge_records"])
+    parts.sections.restore(arrays["section_records"], arrays["section_totals"])
     for part in parts.after_step:
         part.restore(arrays)
     engine.time, engine.dt = float(scalars["time"]), float(scalars["dt"])

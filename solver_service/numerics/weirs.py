@@ -71,6 +71,7 @@ class Weirs:
         self._crests = self._to_device(np.array([crest for crest, _ in walls.values()]), wp.float32)
         self._coefficients = self._to_device(np.array([c for _, c in walls.values()]), wp.float32)
         self._between = self._to_device(between, wp.int32)
+        self.numbers: dict[Face, int] = {face: number for number, face in enumerate(walls)}
         kept = (len(sides), int(KEPT_LENGTH) + len(store.arrival_depths))
         self._kept = wp.zeros(kept, dtype=wp.float32, device=store.device)
 
@@ -94,6 +95,10 @@ class Weirs:
                 take(row, col, int(NORTH), number)
                 take(row + 1, col, int(SOUTH), number)
         return dict(sorted(sides.items()))
+
+    def wall_arrays(self) -> list[wp.array]:
+        """Crests, coefficients and what lies between, by the number of the wall; see `weir_kernels`."""
+        return [self._crests, self._coefficients, self._between]
 
     def cells(self) -> npt.NDArray[np.bool_]:
         """None: at a wall nothing happens while the water on both sides rests."""

@@ -9,6 +9,7 @@ PACKAGES = ("protocol", "solver_service", "viewer")
 TESTED_ELSEWHERE = {
     "solver_service/numerics/clock_kernels.py": "tests/solver_service/numerics/test_engines.py",
     "solver_service/numerics/conservative_update.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/edge_kernels.py": "tests/solver_service/numerics/test_edges.py",
     "solver_service/numerics/engine.py": "tests/solver_service/numerics/test_engines.py",
     "solver_service/numerics/fields.py": "tests/solver_service/numerics/test_solver.py",
     "solver_service/numerics/forcing_kernels.py": "tests/solver_service/numerics/test_forcing.py",
@@ -18,6 +19,7 @@ TESTED_ELSEWHERE = {
     "solver_service/numerics/riemann.py": "tests/solver_service/numerics/test_engines.py",
     "solver_service/numerics/row_engine.py": "tests/solver_service/numerics/test_engines.py",
     "solver_service/numerics/row_kernels.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/section_kernels.py": "tests/solver_service/numerics/test_section_recorder.py",
     "solver_service/numerics/snapshot.py": "tests/solver_service/numerics/test_solver.py",
     "solver_service/numerics/step_kernels.py": "tests/solver_service/numerics/test_engines.py",
     "solver_service/numerics/tile_kernels.py": "tests/solver_service/numerics/test_active_tiles.py",
