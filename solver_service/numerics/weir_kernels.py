@@ -273,6 +273,11 @@ def step_beside_weirs(
     south = cells[c, SOUTH]
     if dt <= 0.0 or active[cells[c, TILE_NUMBER]] == 0:
         return
+    deepest = wp.max(f.h[i, j], wp.max(f.h[i, j - 1], f.h[i, j + 1]))
+    deepest = wp.max(deepest, wp.max(f.h[i - 1, j], f.h[i + 1, j]))
+    if deepest <= s.depth_film:  # nothing moves, wall or no wall
+        remember(f, i, j, c, kept)
+        return
     half_dt = 0.5 * dt
     r = dt / s.dx
     p = predict_at(f, s, i, j, half_dt)
