@@ -18,7 +18,7 @@ from pathlib import Path
 from bench.machine import load, machine
 
 FOLDER = Path(__file__).parent
-NOT_BENCHES = {"__init__", "__main__", "machine", "service_process", "viewer_scenes"}
+NOT_BENCHES = {"__init__", "__main__", "cubin", "floods", "machine", "service_process", "viewer_scenes"}
 
 
 def names() -> list[str]:

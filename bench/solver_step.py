@@ -13,13 +13,14 @@ import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
+from bench.floods import lake_with_everything, wavy_lake
 from solver_service.numerics import FloodModel, ShallowWaterSolver, SolverParams, device_names
 
 Engine = Literal["auto", "rows", "kernels"]
@@ -36,21 +37,6 @@ class Figure:
     unit: str
     floor: float | None
     case: str
-
-
-def wavy_lake(side: int, wet: float = 1.0) -> tuple[FloodModel, list[np.ndarray]]:
-    """A lake over dunes with a hump and a swirl; the part `wet` of the columns carries water."""
-    y, x = np.mgrid[0:side, 0:side].astype(np.float32)
-    z = 0.3 * np.sin(x / 17) * np.cos(y / 23) + 0.5
-    columns = round(wet * side)
-    if columns < side:
-        z[:, columns:] += 10.0
-    n = 0.03 + 0.01 * np.sin(x / 40) * np.cos(y / 31)
-    centre = columns // 2, side // 2
-    h = np.maximum(4.0 - z, 0.0)
-    h += 0.5 * np.exp(-((x - centre[0]) ** 2 + (y - centre[1]) ** 2) / (0.02 * side * columns)) * (h > 0.0)
-    water = [h, 0.3 * np.sin(x / 50) * (h > 0.0), 0.2 * np.cos(y / 40) * (h > 0.0)]
-    return FloodModel(10.0, z.astype(np.float32), n.astype(np.float32)), water
 
 
 def seconds_per_step(solver: ShallowWaterSolver, interval: float, repeats: int) -> float:
@@ -97,18 +83,28 @@ def fully_wet(smoke: bool) -> Iterator[Figure]:
         )
 
 
+def everything_on(smoke: bool) -> Iterator[Figure]:
+    """Rate of a fully wet grid with rain, infiltration, sources, driven edges, gauges and depth classes."""
+    side = 256 if smoke else 1024
+    model, water, params = lake_with_everything(side)
+    solver = ShallowWaterSolver(model, replace(params, threads=1))
+    solver.set_water(*water)
+    rate = side * side / seconds_per_step(solver, 6.0, 4)
+    yield Figure("wet_one_thread_everything_on", rate, "cell-steps/s", None, f"{side} x {side}, all wet")
+
+
 def mostly_dry(smoke: bool) -> Iterator[Figure]:
     """Cost of a step with 5 % wet columns in units of a fully wet one."""
-    side = 640 if smoke else 2048
-    costs = []
-    for wet in (0.05, 1.0):
-        model, water = wavy_lake(side, wet)
-        solver = ShallowWaterSolver(model, SolverParams(threads=1))
-        solver.set_water(*water)
-        costs.append(seconds_per_step(solver, 6.0 if smoke else 20.0, 3))
-    yield Figure(
-        "cost_at_5_percent_wet", costs[0] / costs[1], "1", None if smoke else 0.08, f"{side} x {side}"
-    )
+    for side in (640,) if smoke else (2048, 8192):
+        costs = []
+        for wet in (0.05, 1.0):
+            model, water = wavy_lake(side, wet)
+            solver = ShallowWaterSolver(model, SolverParams(threads=1))
+            solver.set_water(*water)
+            costs.append(seconds_per_step(solver, 20.0 if side == 2048 else 6.0, 3 if side < 8192 else 1))
+            del solver
+        floor = None if smoke else 0.08
+        yield Figure("cost_at_5_percent_wet", costs[0] / costs[1], "1", floor, f"{side} x {side}")
 
 
 def per_step(smoke: bool) -> Iterator[Figure]:
@@ -154,7 +150,7 @@ def malpasset(smoke: bool) -> Iterator[Figure]:
     yield Figure("malpasset_volume_error", abs(solver.budget().error_relative), "1", 1e-6, case)
 
 
-GROUPS = (fully_wet, mostly_dry, per_step, compiling, malpasset)
+GROUPS = (fully_wet, everything_on, mostly_dry, per_step, compiling, malpasset)
 
 
 def figures(smoke: bool) -> Iterator[dict[str, object]]:
