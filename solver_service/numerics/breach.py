@@ -21,6 +21,7 @@ import numpy as np
 from solver_service.errors import ModelError
 from solver_service.numerics.snapping import (
     NO_FACES,
+    NORTH_FACE,
     Cells,
     IntArray,
     Snapped,
@@ -33,7 +34,7 @@ from solver_service.numerics.snapping import (
     nearest_on_line,
     sentence,
 )
-from solver_service.numerics.structures import Blocked, check_number
+from solver_service.numerics.structures import Blocked, Structure, Weir, check_number
 
 RIM = 2
 """A breach stays this many cells off the rim of the grid, where ghost cells mirror the bed."""
@@ -187,3 +188,26 @@ class Breach:
             )
         check_cells(f"a probe of {self.name}", self.probes(dx), shape, blocked)
         check_cells(self.name, tuple(map(tuple, cells.tolist())), shape, blocked)
+
+
+def refuse_walls_in_breaches(
+    structures: tuple[Structure, ...], breaches: tuple[Breach, ...], shape: tuple[int, int], dx: float
+) -> None:
+    """Refuse a weir at a cell that a breach eats: a breach lowers the ground and leaves walls standing.
+
+    Raises:
+        ModelError: naming both and the cell.
+    """
+    walled: dict[tuple[int, int], Weir] = {}
+    for weir in structures if breaches else ():
+        if isinstance(weir, Weir):
+            for row, col, side in weir.snapped(shape, dx).faces.tolist():
+                beyond = (row + 1, col) if side == NORTH_FACE else (row, col + 1)
+                walled |= {(row, col): weir, beyond: weir}
+    for breach in breaches:
+        for row, col in breach.footprint(shape, dx)[0].tolist():
+            if (row, col) in walled:
+                raise ModelError(
+                    f"{sentence(breach.name)} reaches cell (row {row}, column {col}), at which"
+                    f" {walled[row, col].name} stands; a weir that ends beside the breach is allowed."
+                )

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from solver_service.errors import ModelError
-from solver_service.numerics.breach import Breach
+from solver_service.numerics.breach import Breach, refuse_walls_in_breaches
 from solver_service.numerics.edge_boundary import EdgeBoundary, check_boundaries
 from solver_service.numerics.fields import FloatRaster
 from solver_service.numerics.infiltration import Infiltration
@@ -64,6 +64,7 @@ class FloodModel:
             self._check_source(source)
         for built in (*self.structures, *self.breaches):
             built.check_on(self.shape, self.dx, self.blocked)
+        refuse_walls_in_breaches(self.structures, self.breaches, self.shape, self.dx)
         if self.rain is not None:
             covered = (self.rain.row_index.size, self.rain.col_index.size)
             if covered != self.z_b.shape:

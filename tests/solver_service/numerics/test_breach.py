@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from solver_service.errors import ModelError
-from solver_service.numerics.breach import Breach
+from solver_service.numerics.breach import Breach, refuse_walls_in_breaches
+from solver_service.numerics.structures import Weir
 
 SHAPE = (40, 60)
 DX = 5.0
@@ -76,3 +77,13 @@ def test_what_has_no_place_on_the_grid_is_refused(changes, said):
     BREACH.check_on(SHAPE, DX, blocked)
     with pytest.raises(ModelError, match=said):
         dataclasses.replace(BREACH, **changes).check_on(SHAPE, DX, blocked)
+
+
+def test_a_wall_in_a_breach_is_refused_and_one_beside_it_is_not():
+    beside = Weir("wall", ((0.0, 24.5), (59.0, 24.5)), 7.0)
+    through = Weir("crown", ((0.0, 20.5), (59.0, 20.5)), 7.0)
+    refuse_walls_in_breaches((beside,), (BREACH,), SHAPE, DX)
+    with pytest.raises(
+        ModelError, match=r"'dyke' reaches cell \(row 20, column 20\), at which the weir 'crown'"
+    ):
+        refuse_walls_in_breaches((beside, through), (BREACH,), SHAPE, DX)

@@ -40,6 +40,25 @@ def test_below_its_crest_a_wall_holds_deep_water_at_rest_for_ever():
     assert s.maxima().speed.max() == 0.0, "the water that the flux step sent through the wall is forgotten"
 
 
+def test_waves_are_thrown_back_by_a_wall_as_by_the_rim_of_the_grid():
+    count = 40
+    waves = (5.0 + 0.5 * np.cos(np.arange(count) * np.pi / count) * np.ones((count, 1))).astype(np.float32)
+    s = solver(
+        wall(20.0, col=count - 0.5, rows=(-0.5, count - 0.5)), z=np.zeros((count, 2 * count), np.float32)
+    )
+    s.set_water(np.hstack([waves, np.zeros_like(waves)]))
+    alone = solver(z=np.zeros((count, count), np.float32))
+    alone.set_water(waves)
+    for run in (s, alone):
+        run.advance_to(35.0)
+    assert np.abs(s.depth()[:, :count] - alone.depth()).max() < 3e-3
+    assert np.abs(alone.depth() - waves).max() > 0.2
+    assert not s.depth()[:, count:].any()
+    assert s.step_count < 1.1 * alone.step_count, (
+        "what the flux step sends through the wall hardly costs steps"
+    )
+
+
 def test_without_the_wall_the_same_water_falls():
     s = solver()
     s.set_water(halves(2.9, 0.0))
