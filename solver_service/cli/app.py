@@ -30,6 +30,7 @@ CaseArgument = Annotated[
 ]
 DeviceOption = Annotated[str, typer.Option("--device", help="auto, cpu or cuda:N.")]
 ThreadsOption = Annotated[int | None, typer.Option("--threads", help="CPU threads; all cores by default.")]
+DataDirOption = Annotated[Path | None, typer.Option("--data-dir", help="Folder of the runs.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="End with one JSON object on standard output.")]
 
 
@@ -125,6 +126,39 @@ def export(
     from solver_service.cli.export import export_run
 
     export_run(run_id, out, data_dir, zarr)
+
+
+store = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Look at, mend and copy stored runs.")
+app.add_typer(store, name="store")
+
+
+@store.command("check")
+def store_check(data_dir: DataDirOption = None) -> None:
+    """Look at every stored row and file; exit code 1 where something is wrong."""
+    from solver_service.cli.store import check_store
+
+    if not check_store(data_dir):
+        raise typer.Exit(1)
+
+
+@store.command("repair")
+def store_repair(data_dir: DataDirOption = None) -> None:
+    """Mend a stored folder while no service runs; frames that are lost can be computed again."""
+    from solver_service.cli.store import repair_store
+
+    if not repair_store(data_dir):
+        raise typer.Exit(1)
+
+
+@store.command("backup")
+def store_backup(
+    destination: Annotated[Path, typer.Argument(metavar="FOLDER", help="A folder that is new or empty.")],
+    data_dir: DataDirOption = None,
+) -> None:
+    """Copy the stored runs, also while a service runs; the token is not copied."""
+    from solver_service.cli.store import backup_store
+
+    backup_store(destination, data_dir)
 
 
 @app.command()

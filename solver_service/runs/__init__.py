@@ -2,8 +2,9 @@
 
 from solver_service.runs.audience import Listener
 from solver_service.runs.controllers import Session
+from solver_service.runs.housekeeper import RoomRules
 from solver_service.runs.registry import RunRegistry
 from solver_service.runs.run_status import RunStatus
 from solver_service.runs.run_tree import Run
 
-__all__ = ["Listener", "Run", "RunRegistry", "RunStatus", "Session"]
+__all__ = ["Listener", "RoomRules", "Run", "RunRegistry", "RunStatus", "Session"]

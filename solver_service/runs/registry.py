@@ -20,12 +20,13 @@ from solver_service.runs.case_catalogue import CaseCatalogue
 from solver_service.runs.controllers import Controllers
 from solver_service.runs.edit_blobs import pack_edits
 from solver_service.runs.edit_desk import EditDesk
+from solver_service.runs.housekeeper import Housekeeper, RoomRules
 from solver_service.runs.restart_policy import RestartPolicy
 from solver_service.runs.run_reports import RunReports
 from solver_service.runs.run_status import ACTIVE, Move, RunStatus, check_move
 from solver_service.runs.run_tree import Run, RunTree
 from solver_service.runs.store_thread import StoreThread
-from solver_service.runs.supervisor import Supervisor
+from solver_service.runs.supervisor import Supervisor, load_run
 from solver_service.runs.worker import Worker
 from solver_service.runs.worker_messages import Pause, WorkerSettings
 from solver_service.runs.worker_pool import WorkerPool
@@ -36,7 +37,6 @@ from solver_service.store import (
     RunDatabase,
     RunRecord,
     load_bed,
-    mend_run,
     remove_run_files,
 )
 
@@ -69,6 +69,7 @@ class RunRegistry:
         spare_workers: int = 1,
         restart_attempts: int = 3,
         restart_within_s: float = 600.0,
+        room: RoomRules | None = None,
     ) -> None:
         """Open the store; `open` then begins the work.
 
@@ -82,6 +83,7 @@ class RunRegistry:
             spare_workers: warm workers that stand by.
             restart_attempts: how often a run whose worker died is taken up again by itself.
             restart_within_s: the time in which these attempts count [s].
+            room: how much the store may take.
 
         Raises:
             StoreError: the folder is in use or cannot be used.
@@ -97,6 +99,8 @@ class RunRegistry:
             data_dir, 0, ring_bytes, checkpoint_interval_s, threads, device
         )
         self._spare_workers = spare_workers
+        self._room = room or RoomRules()
+        self._housekeeping: asyncio.Task[None]
         self._commands: set[asyncio.Task[None]] = set()
         self.audience = Audience()
         self.tree = RunTree()
@@ -115,7 +119,9 @@ class RunRegistry:
         active = tuple(status.value for status in ACTIVE)
         await self._store.call(RunDatabase.interrupt_active, active, RunStatus.PAUSED.value, INTERRUPTED)
         for record in await self._store.call(RunDatabase.runs):
-            self.tree.add(await self._store.call(_load_run, self._folder, record))
+            self.tree.add(await self._store.call(load_run, self._folder, record))
+        keeper = Housekeeper(self, self.tree, self._store, self._folder, self.reports, self._room, epoch)
+        self._housekeeping = asyncio.get_running_loop().create_task(keeper.work())
         self.supervisor.pool = WorkerPool(
             replace(self._worker_settings, epoch=epoch),
             self._spare_workers,
@@ -127,6 +133,7 @@ class RunRegistry:
 
     async def close(self) -> None:
         """Pause what computes, end the workers, close the store."""
+        self._housekeeping.cancel()
         computing = [run for run in self.tree if run.status in ACTIVE]
         await self.supervisor.close()
         if self._commands:
@@ -386,11 +393,3 @@ class RunRegistry:
 
 def _new_id() -> str:
     return f"r{secrets.token_hex(6)}"
-
-
-def _load_run(database: RunDatabase, folder: DataFolder, record: RunRecord) -> Run:
-    """A run from the store, its files mended."""
-    mend_run(folder, database, record.run)
-    run = Run.of(record, tuple(database.edit_events(record.run)))
-    run.frames = database.frames(record.run)
-    return run

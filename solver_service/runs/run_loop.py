@@ -229,6 +229,8 @@ class RunLoop:
         if course.finished or (begin.paused and index == begin.legs[-1].first_index):
             course.computing = False
         self._keep(course, computation)
+        if course.finished:
+            self._let_go(course)  # the states stay in memory for whoever branches
         self._take_stock(course, computation)
         self._progress(course, computation)
         if begin.paused and not course.computing and not course.finished:

@@ -20,7 +20,7 @@ from solver_service.runs.store_thread import StoreThread
 from solver_service.runs.worker import Worker
 from solver_service.runs.worker_messages import Begin, Left, Report
 from solver_service.runs.worker_pool import WorkerPool
-from solver_service.store import DataFolder, FrameRecord, RunDatabase, mend_run
+from solver_service.store import DataFolder, FrameRecord, RunDatabase, RunRecord, mend_run
 
 LOG = logging.getLogger(__name__)
 
@@ -174,3 +174,10 @@ def _waits_for_worker(run: Run) -> bool:
 def _mended_frames(database: RunDatabase, folder: DataFolder, run: str) -> list[FrameRecord]:
     mend_run(folder, database, run)
     return database.frames(run)
+
+
+def load_run(database: RunDatabase, folder: DataFolder, record: RunRecord) -> Run:
+    """A run from the store, its files mended; for the start of a service."""
+    run = Run.of(record, database.edit_events(record.run))
+    run.frames = _mended_frames(database, folder, record.run)
+    return run

@@ -1,8 +1,11 @@
 """What the service keeps on disk. A frame or checkpoint exists only when its row does."""
 
-from solver_service.store.checkpoint_store import CheckpointStore, StoredState
+from solver_service.store.backup import back_up
+from solver_service.store.checkpoint_store import CheckpointStore, StoredState, remove_checkpoint
+from solver_service.store.compaction import compact_run, is_scattered
 from solver_service.store.data_folder import DataFolder, default_data_dir
 from solver_service.store.frame_files import FrameReader, FrameWriter
+from solver_service.store.integrity import Fault, find_faults, repair
 from solver_service.store.mend import mend_run, remove_run_files
 from solver_service.store.records import (
     CheckpointRecord,
@@ -12,6 +15,8 @@ from solver_service.store.records import (
     RunEvent,
     RunRecord,
 )
+from solver_service.store.retention import Removal, StoredRun, plan_removals
+from solver_service.store.room import free_bytes, has_room
 from solver_service.store.run_database import RunDatabase
 from solver_service.store.terrain_files import load_bed, save_bed
 
@@ -21,16 +26,28 @@ __all__ = [
     "DataFolder",
     "EditEvent",
     "EditEventKind",
+    "Fault",
     "FrameReader",
     "FrameRecord",
     "FrameWriter",
+    "Removal",
     "RunDatabase",
     "RunEvent",
     "RunRecord",
+    "StoredRun",
     "StoredState",
+    "back_up",
+    "compact_run",
     "default_data_dir",
+    "find_faults",
+    "free_bytes",
+    "has_room",
+    "is_scattered",
     "load_bed",
     "mend_run",
+    "plan_removals",
+    "remove_checkpoint",
     "remove_run_files",
+    "repair",
     "save_bed",
 ]

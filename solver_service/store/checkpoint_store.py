@@ -127,8 +127,13 @@ class CheckpointStore:
     def _retire(self, run: str) -> None:
         """Drop the middle: the first (the branch point) and the newest stay."""
         for record in self._database.checkpoints(run)[1 : -self._keep]:
-            self._database.delete_checkpoint(record)
-            shutil.rmtree(self._folder.checkpoints(run) / record.name, ignore_errors=True)
+            remove_checkpoint(self._database, self._folder, record)
+
+
+def remove_checkpoint(database: RunDatabase, folder: DataFolder, record: CheckpointRecord) -> None:
+    """Forget a checkpoint and free its room."""
+    database.delete_checkpoint(record)
+    shutil.rmtree(folder.checkpoints(record.run) / record.name, ignore_errors=True)
 
 
 def remove_orphans(folder: DataFolder, database: RunDatabase, run: str) -> int:

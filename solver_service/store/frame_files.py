@@ -52,7 +52,7 @@ class FrameWriter:
         """
         try:
             descriptor = self._open_segment()
-            _write_all(descriptor, frame, self._end)
+            write_all(descriptor, frame, self._end)
             os.fsync(descriptor)
             record = FrameRecord(
                 run=self._run,
@@ -87,14 +87,8 @@ class FrameWriter:
         if self._descriptor is not None and self._end >= self._segment_bytes:
             self.close()
         if self._descriptor is None:
-            path = self._folder.frames(self._run)
-            path.mkdir(parents=True, exist_ok=True)
-            number = 1 + max((int(file.stem) for file in path.glob("*.segment")), default=0)
-            self._segment = f"{number:06d}.segment"
-            flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-            self._descriptor = os.open(path / self._segment, flags, 0o644)
+            self._segment, self._descriptor = new_segment(self._folder, self._run)
             self._end = 0
-            fsync_folder(path)
         return self._descriptor
 
     def _cut(self) -> None:
@@ -150,7 +144,20 @@ def recover_segments(folder: DataFolder, database: RunDatabase, run: str) -> int
     return cut
 
 
-def _write_all(descriptor: int, content: bytes, offset: int) -> None:
+def new_segment(folder: DataFolder, run: str) -> tuple[str, int]:
+    """Make the next segment file of a run; gives its name and a descriptor to write to."""
+    path = folder.frames(run)
+    path.mkdir(parents=True, exist_ok=True)
+    number = 1 + max((int(file.stem) for file in path.glob("*.segment")), default=0)
+    name = f"{number:06d}.segment"
+    flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    descriptor = os.open(path / name, flags, 0o644)
+    fsync_folder(path)
+    return name, descriptor
+
+
+def write_all(descriptor: int, content: bytes, offset: int) -> None:
+    """Write the whole content at an offset, however little the system takes at a time."""
     os.lseek(descriptor, offset, os.SEEK_SET)
     view = memoryview(content)
     while view:

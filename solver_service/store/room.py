@@ -11,6 +11,16 @@ from solver_service.errors import StoreError, StoreFull
 from solver_service.store.data_folder import DataFolder
 
 _FULL = frozenset({errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)})
+# a quota and a file limit reach SQLite as failed writes
+_FULL_SQLITE = frozenset(
+    {
+        sqlite3.SQLITE_FULL,
+        sqlite3.SQLITE_IOERR_WRITE,
+        sqlite3.SQLITE_IOERR_FSYNC,
+        sqlite3.SQLITE_IOERR_TRUNCATE,
+        sqlite3.SQLITE_IOERR_SHMSIZE,
+    }
+)
 PROBE = "room.writing"
 
 
@@ -25,7 +35,7 @@ def store_failure(error: OSError | sqlite3.Error, sentence: str) -> StoreError:
         A `StoreFull` where room is what lacks, else a `StoreError`.
     """
     if isinstance(error, sqlite3.Error):
-        full = getattr(error, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_FULL
+        full = getattr(error, "sqlite_errorcode", None) in _FULL_SQLITE
         return (StoreFull if full else StoreError)(f"{sentence}: {error}")
     kind = StoreFull if error.errno in _FULL else StoreError
     return kind(f"{sentence}: {error.strerror or error}")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import sqlite3
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import astuple, fields, replace
 from pathlib import Path
 
@@ -102,6 +102,23 @@ class RunDatabase:
     def close(self) -> None:
         """Close the connection."""
         self._db.close()
+
+    def copy_to(self, path: Path) -> None:
+        """Copy the whole database as it is at one moment, while others write to it.
+
+        Raises:
+            StoreError: there is no room, or a database is damaged.
+        """
+        with _told(path), closing(sqlite3.connect(path)) as target:
+            self._db.backup(target)
+
+    def faults(self) -> list[str]:
+        """What SQLite finds wrong with the database itself."""
+        with _told(self._path):
+            found = [row[0] for row in self._db.execute("PRAGMA integrity_check").fetchall()]
+            orphans = self._db.execute("PRAGMA foreign_key_check").fetchall()
+        wrong = [f"store {self._path}: {text}" for text in found if text != "ok"]
+        return wrong + [f"store {self._path}: table {row[0]} has a row without its run" for row in orphans]
 
     def begin_epoch(self) -> int:
         """Fence off every writer that was opened before; the service calls it once when it starts."""
@@ -205,6 +222,35 @@ class RunDatabase:
                 f'SELECT {_FRAME} FROM frames WHERE run = ? ORDER BY "index" DESC LIMIT 1', (run,)
             ).fetchone()
         return None if row is None else FrameRecord(*row)
+
+    def move_frames(self, frames: list[FrameRecord]) -> None:
+        """Record that the bytes of frames lie elsewhere now, all at once."""
+        with self._transaction():
+            self._db.executemany(
+                'UPDATE frames SET segment = ?, "offset" = ? WHERE run = ? AND "index" = ?',
+                [(frame.segment, frame.offset, frame.run, frame.index) for frame in frames],
+            )
+
+    def delete_frames_from(self, run: str, index: int) -> int:
+        """Forget the frames of a run from an index on; gives how many."""
+        with self._transaction():
+            found = self._db.execute('DELETE FROM frames WHERE run = ? AND "index" >= ?', (run, index))
+            self._log(run, "truncated", f"from frame {index} on")
+        return found.rowcount
+
+    def frame_bytes(self) -> dict[str, int]:
+        """Size of the frames of every run that has some [bytes]."""
+        with _told(self._path):
+            return dict(self._db.execute("SELECT run, SUM(size) FROM frames GROUP BY run").fetchall())
+
+    def used_bytes(self) -> int:
+        """Size of all frames and checkpoints [bytes]."""
+        with _told(self._path):
+            row = self._db.execute(
+                "SELECT (SELECT COALESCE(SUM(size), 0) FROM frames) "
+                "+ (SELECT COALESCE(SUM(size), 0) FROM checkpoints)"
+            ).fetchone()
+        return int(row[0])
 
     def segment_ends(self, run: str) -> dict[str, int]:
         """Committed length of every segment file of a run."""

@@ -17,7 +17,7 @@ import uvicorn
 
 from protocol import limits
 from solver_service.errors import ServeError
-from solver_service.runs import RunRegistry
+from solver_service.runs import RoomRules, RunRegistry
 from solver_service.web.app import create_app
 from solver_service.web.auth import Gate, load_token
 from solver_service.web.settings import ServiceSettings
@@ -50,6 +50,7 @@ def run_service(settings: ServiceSettings) -> None:
             spare_workers=settings.spare_workers,
             restart_attempts=settings.restart_attempts,
             restart_within_s=settings.restart_within_s,
+            room=RoomRules(settings.store_bytes, settings.reserve_bytes),
         )
         gate = Gate(load_token(settings.token_path), settings.allowed_origins)
     except BaseException:

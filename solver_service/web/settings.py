@@ -32,6 +32,8 @@ class ServiceSettings:
         spare_workers: warm workers that stand by.
         restart_attempts: how often a run whose worker died is taken up again by itself; a blow-up never is.
         restart_within_s: the time in which these attempts count [s].
+        store_bytes: most bytes of frames and checkpoints; None for as much as the disk has.
+        reserve_bytes: room on the disk that is left to others [bytes].
     """
 
     host: str = "127.0.0.1"
@@ -49,6 +51,8 @@ class ServiceSettings:
     spare_workers: int = 1
     restart_attempts: int = 3
     restart_within_s: float = 600.0
+    store_bytes: int | None = None
+    reserve_bytes: int = 256 << 20
 
     @property
     def token_path(self) -> Path:

@@ -1,5 +1,6 @@
 import asyncio
 import threading
+import time
 from collections.abc import Callable, Coroutine, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
@@ -7,7 +8,7 @@ from typing import Any, TypeVar
 import pytest
 
 from protocol import Notice, RunChanged, ServerMessage
-from solver_service.runs import Run, RunRegistry, RunStatus
+from solver_service.runs import RoomRules, Run, RunRegistry, RunStatus
 from tests.end_to_end.dam_break import write_dam_break
 
 T = TypeVar("T")
@@ -23,6 +24,7 @@ class Service:
         self._thread.start()
         self.heard: list[ServerMessage] = []
         self._news = threading.Condition()
+        options.setdefault("room", RoomRules(interval_s=0.2))
         self.registry = RunRegistry(data_dir, **options)
         self.registry.audience.add(self)
         self.call(self.registry.open())
@@ -42,8 +44,10 @@ class Service:
 
     def wait(self, test: Callable[[], bool]) -> None:
         """Wait until something is so."""
-        with self._news:
-            assert self._news.wait_for(test, PATIENCE_S), "it did not come"
+        ends = time.monotonic() + PATIENCE_S
+        with self._news:  # not everything that is waited for is announced
+            while not self._news.wait_for(test, 0.1):
+                assert time.monotonic() < ends, "it did not come"
 
     def wait_for_status(self, run: Run, status: RunStatus) -> None:
         self.wait(lambda: run.status is status)
