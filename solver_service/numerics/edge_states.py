@@ -89,11 +89,14 @@ def open_state(h: float, u: float, rest_h: float, rest_u: float) -> edge_state:
 
 
 @wp.func
-def stage_state(h: float, u: float, level_depth: float) -> edge_state:
-    """The water outside stands `level_depth` above the bed, below zero when under it."""
+def stage_state(h: float, u: float, level_depth: float, rounding: float) -> edge_state:
+    """The water outside stands `level_depth` above the bed, below zero when under it.
+
+    `rounding` is that of the level [m]: two levels no further apart are the same.
+    """
     c = wp.sqrt(GRAVITY * h)
     h_b = level_depth
-    if wp.abs(h_b - h) <= FACE_TOLERANCE * wp.max(h, h_b):
+    if wp.abs(h_b - h) <= wp.max(FACE_TOLERANCE * wp.max(h, h_b), rounding):
         h_b = h
     state = edge_state(h, u, FALLS_OFF)
     # A level above the sequent depth sends a jump against supercritical outflow.

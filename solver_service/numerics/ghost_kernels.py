@@ -31,6 +31,9 @@ from solver_service.numerics.fields import GHOSTS, TILE, FloatRaster
 from solver_service.numerics.friction import GRAVITY, inverse_cube_root
 from solver_service.numerics.warp_modules import SUPPORT_MODULE
 
+LEVEL_ROUNDING = wp.constant(6.0e-8)
+"""Rounding of a level that was given in single precision [1]."""
+
 
 @wp.func
 def state_at_face(
@@ -53,7 +56,8 @@ def state_at_face(
     if s.kind[k] == EDGE_OPEN:
         state = open_state(h, u, s.rest_h[edge, face], s.rest_u[edge, face])
     elif s.kind[k] == EDGE_STAGE:
-        state = stage_state(h, u, wp.float32(s.level[k] - wp.float64(z)) + 0.5 * friction_drop)
+        depth = wp.float32(s.level[k] - wp.float64(z)) + 0.5 * friction_drop
+        state = stage_state(h, u, depth, LEVEL_ROUNDING * wp.abs(wp.float32(s.level[k])))
     elif s.kind[k] == EDGE_DISCHARGE:
         total = wp.float64(0.0)
         for c in range(s.first_chunk[k], s.first_chunk[k + 1]):

@@ -306,6 +306,10 @@ class ShallowWaterSolver:
         """What the gauges of the parameters have recorded."""
         return self._gauges.series()
 
+    def unmet_outflow(self) -> dict[str, float]:
+        """Volume that each discharge edge was to take out and that was not there [m3]."""
+        return self._edges.unmet()
+
     def section_series(self) -> SectionSeries:
         """What has passed the sections of the parameters, at the gauge interval."""
         return self._sections.series()

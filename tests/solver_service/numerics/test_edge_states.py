@@ -22,7 +22,7 @@ def evaluate(
     k = wp.tid()
     state = es.open_state(h[k], u[k], a[k], b[k])
     if kind == es.EDGE_STAGE:
-        state = es.stage_state(h[k], u[k], a[k])
+        state = es.stage_state(h[k], u[k], a[k], b[k])
     if kind == es.EDGE_DISCHARGE:
         state = es.discharge_state(h[k], u[k], a[k])
     if kind == es.EDGE_NORMAL_DEPTH:
