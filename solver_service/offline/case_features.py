@@ -22,6 +22,9 @@ from solver_service.numerics.snapping import Snapped
 from solver_service.numerics.structures import Culvert, Pump, Weir
 from solver_service.scenario import Case
 
+SIDES = (", east", ", north")
+"""Which side of its cell a face is."""
+
 
 @dataclass(frozen=True)
 class Feature:
@@ -50,9 +53,12 @@ def case_features(case: Case) -> list[Feature]:
         kind = type(built).__name__.lower()
         text = f"{_describe(built, grid)}; {_where(snapped)}"
         found.append(Feature(kind, built.id, text, _geometry(snapped, grid)))
-    for gauge, (col, row) in zip(case.gauges, case.params.gauges, strict=False):
+    for gauge, (col, row) in zip(case.gauges, case.params.gauges, strict=True):
         text = f"cell (row {row:g}, column {col:g})"
         found.append(Feature("gauge", gauge.id, text, {"type": "Point", "coordinates": [gauge.x, gauge.y]}))
+    for section in case.sections:
+        snapped = section.snapped(grid.shape)
+        found.append(Feature("section", section.id, _where(snapped), _geometry(snapped, grid)))
     return found
 
 
@@ -110,7 +116,10 @@ def _where(snapped: Snapped) -> str:
     for what, items in (("cell", snapped.cells), ("face", snapped.faces)):
         if len(items) == 0:
             continue
-        shown = [f"(row {item[0]}, column {item[1]})" for item in items.tolist()]
+        shown = [
+            f"(row {row}, column {col}{''.join(SIDES[side] for side in sides)})"
+            for row, col, *sides in items.tolist()
+        ]
         named = " ".join(shown) if len(shown) <= 4 else f"{shown[0]} to {shown[-1]}"
         parts.append(f"{len(items)} {what}{'s' if len(items) > 1 else ''} {named}")
     return ", ".join(parts)

@@ -103,7 +103,7 @@ class _Run:
         params = dataclasses.replace(case.params, threads=threads or case.params.threads)
         self.solver = ShallowWaterSolver(case.model, params, device)
         self.solver.set_water(case.initial_h)
-        self.structures = StructureLog(case.grid.datum_offset)
+        self.structures = StructureLog(case)
         self.smallest = SmallestStep(case.grid)
 
     def compute(
@@ -137,6 +137,7 @@ class _Run:
         """
         series = self.solver.gauge_series()
         write_gauges(folder / "gauges.csv", self.case, series)
-        write_sections(folder / "sections.csv", self.case, series)
+        ids = [section.id for section in self.case.sections]
+        write_sections(folder / "sections.csv", ids, self.solver.section_series())
         write_structures(folder / "structures.csv", self.structures)
         write_maps(folder, self.case, self.solver)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -80,6 +81,15 @@ def summarise(
                 "level_m": state.level + case.grid.datum_offset,
             }
             for state in solver.breach_states()
+        ],
+        "sections": [
+            {
+                "section": totals.id,
+                "volume_m3": totals.volume,
+                "peak_m3_s": totals.peak,
+                "peak_time_s": totals.peak_time if math.isfinite(totals.peak_time) else None,
+            }
+            for totals in solver.section_totals()[: len(case.sections)]
         ],
         "warnings": [*case.warnings, *_odd_ends(solver, budget)],
         "device": solver.device,

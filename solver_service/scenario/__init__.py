@@ -1,6 +1,6 @@
 """Cases: data sets with their forcing, read from case files and checked key by key."""
 
-from solver_service.scenario.case import Case, DemoScript, Gauge, Section
+from solver_service.scenario.case import Case, DemoScript, Gauge
 from solver_service.scenario.case_folder import CaseFolder, open_case
 from solver_service.scenario.catalogue import case_summary, list_cases, load_case
 
@@ -9,7 +9,6 @@ __all__ = [
     "CaseFolder",
     "DemoScript",
     "Gauge",
-    "Section",
     "case_summary",
     "list_cases",
     "load_case",

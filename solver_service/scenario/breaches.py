@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from solver_service.numerics.breach import Breach
+from solver_service.numerics.snapping import face_chain
 from solver_service.scenario.inputs import Inputs
 from solver_service.scenario.quantities import LEVEL
 from solver_service.scenario.table import Table
@@ -55,6 +56,8 @@ def _read(table: Table, number: int, inputs: Inputs) -> Breach:
     points = table.points("line", 2)
     length = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
     vertices = inputs.line(table, "line")
+    if not len(face_chain(vertices, inputs.grid.shape)):
+        raise table.wrong("line", f"a line of at least one cell ({inputs.grid.dx:g} m) is allowed")
     ground = _highest_ground(vertices, inputs)
     crest = table.real("crest", "an elevation in m", LEVEL.low, LEVEL.high, default=ground)
     if abs(crest - ground) > 1000.0:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +10,7 @@ from numpy.typing import NDArray
 
 from protocol import EditLine, GridGeometry
 from solver_service.numerics import FloodModel, SolverParams
+from solver_service.numerics.section import Section
 
 Point = tuple[float, float]
 
@@ -29,51 +28,6 @@ class Gauge:
     id: str
     x: float
     y: float
-
-
-@dataclass(frozen=True)
-class Section:
-    """A line through which the discharge is recorded.
-
-    It is sampled at points about one cell apart; the discharge is the sum of h (u n_x + v n_y) ds over them,
-    with the normal n to the right of the line, looking from its first point to its last.
-
-    Attributes:
-        id: its name.
-        x: easting of the points [m].
-        y: northing of the points [m].
-        normal_x: eastern part of the normal at the points.
-        normal_y: northern part.
-        ds: length that each point stands for [m].
-    """
-
-    id: str
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    normal_x: NDArray[np.float64]
-    normal_y: NDArray[np.float64]
-    ds: NDArray[np.float64]
-
-    @staticmethod
-    def along(name: str, line: tuple[Point, ...], dx: float) -> Section:
-        """Sample a line.
-
-        Args:
-            name: id of the section.
-            line: its vertices [m].
-            dx: cell size [m].
-        """
-        parts = []
-        for (xa, ya), (xb, yb) in itertools.pairwise(line):
-            length = math.hypot(xb - xa, yb - ya)
-            if length == 0.0:
-                continue
-            count = max(1, round(length / dx))
-            t = (np.arange(count) + 0.5) / count
-            normal = np.tile([(yb - ya) / length, -(xb - xa) / length, length / count], (count, 1))
-            parts.append(np.column_stack([xa + t * (xb - xa), ya + t * (yb - ya), normal]))
-        x, y, normal_x, normal_y, ds = np.concatenate(parts).T
-        return Section(name, x, y, normal_x, normal_y, ds)
 
 
 @dataclass(frozen=True)
@@ -95,7 +49,8 @@ class DemoScript:
 class Case:
     """A data set with its forcing.
 
-    The gauges of `params` are the case's gauges, in their order, then the points of its sections.
+    The gauges of `params` are the case's gauges, in their order; its sections are the case's, then one along
+    the line of each weir and breach.
 
     Attributes:
         name: short name, letters, digits, `_` and `-`.
@@ -111,7 +66,7 @@ class Case:
         initial_h: depth at time 0 [m], float32 [nrows, ncols].
         duration: simulated time [s].
         output_interval: time between frames [s].
-        params: how it is solved.
+        params: how it is solved, and the cells and sections that are recorded.
         gauges: places recorded.
         sections: lines recorded.
         nodata_count: cells of the terrain without data, walled or filled.

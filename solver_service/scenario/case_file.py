@@ -20,7 +20,7 @@ from solver_service.scenario.ground import GroundKeys, read_ground, read_ground_
 from solver_service.scenario.infiltration import read_infiltration
 from solver_service.scenario.initial import read_initial
 from solver_service.scenario.inputs import Inputs
-from solver_service.scenario.places import gauge_cells, read_gauges, read_sections
+from solver_service.scenario.places import gauge_cells, read_gauges, read_sections, structure_sections
 from solver_service.scenario.rain import read_rain
 from solver_service.scenario.roughness import read_roughness
 from solver_service.scenario.run_settings import read_params, read_times
@@ -92,7 +92,7 @@ def _read_below_ground(top: Table, keys: GroundKeys, inputs: Inputs) -> Case:
     about, run, terrain, folder = need(top, "case"), need(top, "run"), inputs.terrain, inputs.folder
     duration, output_interval = read_times(run)
     gauges = read_gauges(top, folder, terrain.grid)
-    sections = read_sections(top.tables("section"), terrain.grid)
+    sections = read_sections(top.tables("section"), inputs)
     model = FloodModel(
         dx=terrain.grid.dx,
         z_b=terrain.z_b,
@@ -125,7 +125,7 @@ def _read_below_ground(top: Table, keys: GroundKeys, inputs: Inputs) -> Case:
         initial_h=read_initial(top.table("initial") or Table(top.file, "initial", {}), inputs),
         duration=duration,
         output_interval=output_interval,
-        params=read_params(run, gauge_cells(gauges, sections, terrain.grid)),
+        params=read_params(run, gauge_cells(gauges, terrain.grid), (*sections, *structure_sections(model))),
         gauges=gauges,
         sections=sections,
         nodata_count=terrain.nodata_count,

@@ -10,21 +10,28 @@ from pathlib import Path
 from solver_service.errors import CaseError
 
 MAX_FILE_BYTES = 64 << 20
+MAX_LINES = 1_000_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class CsvLine:
     """A line below the header.
 
     Attributes:
         file: name of the file, for errors.
         number: which line of the file, from 1.
-        cells: text of each column, stripped.
+        columns: place of each column, the same for all lines.
+        cells: text of each cell, stripped.
     """
 
     file: str
     number: int
-    cells: dict[str, str]
+    columns: dict[str, int]
+    cells: list[str]
+
+    def text(self, column: str) -> str:
+        """Text of a column."""
+        return self.cells[self.columns[column]]
 
     def wrong(self, what: str) -> CaseError:
         """The error of this line."""
@@ -36,7 +43,7 @@ class CsvLine:
         Raises:
             CaseError: it is missing, no number, or out of range.
         """
-        text = self.cells[column]
+        text = self.text(column)
         if not text:
             raise self.wrong(f"has no '{column}'; a number is needed in every line, so fill the gap")
         try:
@@ -72,11 +79,14 @@ def read_csv(path: Path) -> tuple[list[str], list[CsvLine]]:
     columns = rows[0][1]
     if len(set(columns)) < len(columns):
         raise CaseError(f"{path.name}: line 1 names a column twice; each its own name is allowed.")
+    if len(rows) > MAX_LINES:
+        raise CaseError(f"{path.name}: has {len(rows)} lines; up to {MAX_LINES} are allowed.")
+    places = {column: place for place, column in enumerate(columns)}
     lines = []
     for number, cells in rows[1:]:
         if len(cells) != len(columns):
             raise CaseError(
                 f"{path.name}: line {number} has {len(cells)} cells; line 1 names {len(columns)} columns."
             )
-        lines.append(CsvLine(path.name, number, dict(zip(columns, cells, strict=True))))
+        lines.append(CsvLine(path.name, number, places, cells))
     return columns, lines

@@ -7,9 +7,14 @@ from pathlib import Path
 
 from protocol import GridGeometry
 from solver_service.errors import CaseError
-from solver_service.scenario.case import Gauge, Section
+from solver_service.numerics import FloodModel
+from solver_service.numerics.breach import Breach
+from solver_service.numerics.section import Section
+from solver_service.numerics.structures import Weir
+from solver_service.scenario.case import Gauge
 from solver_service.scenario.case_folder import CaseFolder
 from solver_service.scenario.csv_file import read_csv
+from solver_service.scenario.inputs import Inputs
 from solver_service.scenario.table import Table
 
 MAX_GAUGES = 10_000
@@ -38,36 +43,41 @@ def read_gauges(top: Table, folder: CaseFolder, grid: GridGeometry) -> tuple[Gau
     return tuple(gauges)
 
 
-def read_sections(tables: list[Table], grid: GridGeometry) -> tuple[Section, ...]:
-    """Sections, sampled along their lines.
+def read_sections(tables: list[Table], inputs: Inputs) -> tuple[Section, ...]:
+    """Sections, as lines in cells.
 
     Raises:
         CaseError: an id stands twice, or a section leaves the terrain.
+        ModelError: a section is too short to take a face between two cells.
     """
     sections: list[Section] = []
     for table in tables:
         name = table.text("id", longest=64)
-        if not name or any(section.id == name for section in sections):
+        if not name or "\n" in name or any(section.id == name for section in sections):
             raise table.wrong("id", "a name of its own is allowed")
-        line = table.points("line", 2)
-        for x, y in line:
-            _check_inside(table.file, f"section '{name}'", x, y, grid)
-        if len(set(line)) < 2:
-            raise table.wrong("line", "a line of some length is allowed")
-        sections.append(Section.along(name, line, grid.dx))
+        section = Section(name, inputs.line(table, "line"))
+        section.chain(inputs.grid.shape)
+        sections.append(section)
     return tuple(sections)
 
 
-def gauge_cells(
-    gauges: tuple[Gauge, ...], sections: tuple[Section, ...], grid: GridGeometry
-) -> tuple[tuple[float, float], ...]:
-    """Column and row, in cells, of all places that the solver records: gauges, then section points."""
-    places = [(gauge.x, gauge.y) for gauge in gauges]
-    for section in sections:
-        places += zip(section.x.tolist(), section.y.tolist(), strict=True)
+def structure_sections(model: FloodModel) -> tuple[Section, ...]:
+    """Sections that tell what passes each weir and breach of a model, along their lines."""
+    watched: list[Weir | Breach] = [built for built in model.structures if isinstance(built, Weir)]
+    watched += model.breaches
+    return tuple(Section(structure_section(built), built.vertices) for built in watched)
+
+
+def structure_section(built: Weir | Breach) -> str:
+    """Name of the section along a weir or breach; no section of a case has a name of two lines."""
+    return f"{type(built).__name__.lower()}\n{built.id}"
+
+
+def gauge_cells(gauges: tuple[Gauge, ...], grid: GridGeometry) -> tuple[tuple[float, float], ...]:
+    """Column and row of the cell of each gauge."""
     cells = []
-    for x, y in places:
-        row, col = grid.to_cell(x, y)
+    for gauge in gauges:
+        row, col = grid.to_cell(gauge.x, gauge.y)
         cells.append(
             (
                 float(min(max(math.floor(col + 0.5), 0), grid.ncols - 1)),
@@ -97,4 +107,4 @@ def read_points(path: Path) -> list[tuple[str, float, float]]:
     missing = [name for name in ("id", x, y) if name not in columns]
     if missing:
         raise CaseError(f"{path.name}: line 1 names no column '{missing[0]}'; id, x, y are needed.")
-    return [(line.cells["id"], line.real(x, -1e9, 1e9), line.real(y, -1e9, 1e9)) for line in lines]
+    return [(line.text("id"), line.real(x, -1e9, 1e9), line.real(y, -1e9, 1e9)) for line in lines]

@@ -54,8 +54,8 @@ def read_rain_files(
         times.append(read_time(line, times[-1] if times else None))
         raster = _read_raster(line, table, unit, inputs)
         inputs.check_system(table, "series", raster)
-        window = window or _Window(line.cells["file"], raster, inputs)
-        frames.append(window.cut(raster, line.cells["file"]))
+        window = window or _Window(line.text("file"), raster, inputs)
+        frames.append(window.cut(raster, line.text("file")))
         if len(lines) * frames[0].size > MAX_VALUES:
             raise line.wrong(
                 f"is one of {len(lines)} rasters too many; {MAX_VALUES} values in all are allowed"
@@ -66,10 +66,10 @@ def read_rain_files(
 
 def _read_raster(line: CsvLine, table: Table, unit: str, inputs: Inputs) -> Raster:
     said_by = f"{line.file}: line {line.number} file"
-    path = inputs.folder.find(line.cells["file"], said_by)
+    path = inputs.folder.find(line.text("file"), said_by)
     kind = format_of(path)
-    if "band" in line.cells or kind in (".tif", ".tiff"):
-        band = line.real("band", 1, 1e6) if "band" in line.cells else None
+    if "band" in line.columns or kind in (".tif", ".tiff"):
+        band = line.real("band", 1, 1e6) if "band" in line.columns else None
         if band is not None and band != round(band):
             raise line.wrong(f"has the band {band:g}; a whole number from 1 is allowed")
         return read_geotiff(path, None if band is None else round(band), RAIN.spellings(unit))

@@ -6,6 +6,7 @@ import itertools
 from typing import Literal, cast
 
 from solver_service.numerics import SolverParams
+from solver_service.numerics.section import Section
 from solver_service.scenario.table import Table
 
 MAX_DURATION = 1e9
@@ -30,7 +31,9 @@ def read_times(run: Table) -> tuple[float, float]:
     return duration, interval
 
 
-def read_params(run: Table, gauges: tuple[tuple[float, float], ...]) -> SolverParams:
+def read_params(
+    run: Table, gauges: tuple[tuple[float, float], ...], sections: tuple[Section, ...]
+) -> SolverParams:
     """The tuning of the solver, with the places that it records.
 
     Raises:
@@ -62,6 +65,7 @@ def read_params(run: Table, gauges: tuple[tuple[float, float], ...]) -> SolverPa
             "depth_arrival", "a depth in m above 0", 0.0, 10.0, default=default.depth_arrival, above=True
         ),
         gauges=gauges,
+        sections=sections,
         gauge_interval=run.real(
             "gauge_interval",
             "a time in s above 0",

@@ -99,7 +99,7 @@ def time_reader(
 
 
 def _seconds(line: CsvLine, start_time: datetime) -> float:
-    text = line.cells["time"]
+    text = line.text("time")
     try:
         moment = datetime.fromisoformat(text)
     except ValueError as error:

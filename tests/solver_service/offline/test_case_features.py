@@ -50,6 +50,10 @@ bottom_level = 301.0
 duration = 600.0
 width_final = 40.0
 
+[[section]]
+id = "low"
+line = [[1300.0, 2000.0], [1300.0, 2050.0]]
+
 [[gauge]]
 id = "g"
 at = [1300.0, 2100.0]
@@ -68,11 +72,12 @@ def test_everything_on_the_grid_is_told_in_words(case: Case) -> None:
     assert told["sea"] == "stage in the west, cells 4 to 9, level 306.50 to 306.50 m"
     assert told["north-1"] == f"normal_depth in the north, cells 0 to {COLS - 1}, slope 0.002"
     assert told["source-1"] == "up to 20 m3/s; 5 cells (row 9, column 10) to (row 11, column 10)"
-    assert told["weir-1"].startswith("crest 305.00 to 306.00 m; 10 faces (row 0, column 19)")
+    assert told["weir-1"].startswith("crest 305.00 to 306.00 m; 10 faces (row 0, column 19, east)")
     assert "100.0 m long" in told["culvert-1"]
     assert told["culvert-1"].endswith("2 cells (row 12, column 5) (row 12, column 15)")
     assert told["pump-1"] == "up to 2 m3/s out of the terrain; 1 cell (row 10, column 5)"
     assert "starts when overtopped, crest 308.00 m, down to 301.00 m in 600 s" in told["breach-1"]
+    assert told["low"] == "5 faces (row 0, column 29, east) to (row 4, column 29, east)"
     assert told["g"] == "cell (row 10, column 30)"
 
 
@@ -81,7 +86,7 @@ def test_the_map_holds_the_faces_and_cells_that_the_solver_takes(case: Case, tmp
 
     collection = json.loads((tmp_path / "built.geojson").read_text())
     features = {feature["properties"]["id"]: feature for feature in collection["features"]}
-    assert len(features) == 9
+    assert len(features) == 10
     weir = np.array(features["weir-1"]["geometry"]["coordinates"])
     assert weir.shape == (10, 2, 2)
     assert (weir[:, :, 0] == 1200.0).all()

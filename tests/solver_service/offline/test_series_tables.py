@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from solver_service.numerics import GaugeSeries
-from solver_service.offline.series_tables import section_discharge, write_gauges, write_sections
+from solver_service.numerics.section import SectionSeries
+from solver_service.offline.series_tables import write_gauges, write_sections
 from solver_service.scenario import Case, load_case
 from tests.solver_service.tiny_case import CASE, GAUGES, rows_of, write_case
 
@@ -42,23 +43,19 @@ def test_gauges_are_one_line_for_each_time_and_place_with_real_levels(case: Case
     }
 
 
-def test_discharge_through_a_line_counts_positive_to_its_right(case: Case) -> None:
-    # The line of the section runs south along x = 1100, 240 m long: its right is the west.
-    ((discharge, area),) = section_discharge(case, series(case, 2.0, 3.0, 7.0))
+def test_sections_are_written_with_their_names(tmp_path: Path) -> None:
+    columns = [np.array([[1.0, 2.0], [3.0, 4.0]]) * scale for scale in (1.0, 10.0, 100.0)]
 
-    np.testing.assert_allclose(discharge, [-2.0 * 3.0 * 240.0] * 2)
-    np.testing.assert_allclose(area, [480.0] * 2)
-
-
-def test_sections_are_written_with_their_names(case: Case, tmp_path: Path) -> None:
-    write_sections(tmp_path / "s.csv", case, series(case, 2.0, 3.0, 0.0))
+    write_sections(tmp_path / "s.csv", ["dam", "a, b"], SectionSeries(np.array([0.0, 1.5]), *columns))
 
     rows = rows_of(tmp_path / "s.csv")
-    assert rows[0] == {
-        "time_s": "0",
-        "section": "dam",
-        "discharge_m3_s": "-1440.0000",
-        "wet_area_m2": "480.0000",
+    assert [row["section"] for row in rows] == ["dam", "dam", "a, b", "a, b"]
+    assert rows[3] == {
+        "time_s": "1.5",
+        "section": "a, b",
+        "discharge_m3_s": "4.0000",
+        "wet_area_m2": "400.0000",
+        "volume_m3": "40",
     }
 
 

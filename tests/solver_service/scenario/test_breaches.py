@@ -73,6 +73,10 @@ def test_a_breach_after_the_end_is_told(tmp_path: Path) -> None:
         (LINEAR + 'start = "rain"', "start is 'rain'; 'time', 'overtopping' is allowed"),
         (LINEAR + 'law = "froehlich"', "law is 'froehlich'; 'linear', 'verheij_van_der_knaap' is allowed"),
         (LINEAR.replace("1105.0", "1005.0"), "breach-1"),
+        (
+            LINEAR.replace("2085.0], [1105.0, 2155.0", "2085.0], [1106.0, 2086.0"),
+            r"a line of at least one cell \(10 m\)",
+        ),
         (LINEAR.replace("1105.0", "9.0"), "lies off the terrain"),
         (LINEAR + LINEAR, r"number 2 line is .*; it may eat cell \(row 10, column 10\), as number 1 may"),
         (

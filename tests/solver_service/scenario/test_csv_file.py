@@ -17,9 +17,9 @@ def test_cells_are_read_by_column_with_their_line_numbers(tmp_path: Path) -> Non
     columns, lines = read_csv(written(tmp_path, '\ufeffa, b\r\n1 ,"x, y"\r\n\r\n ,\r\n2,3\r\n'))
 
     assert columns == ["a", "b"]
-    assert [(line.number, line.cells) for line in lines] == [
-        (2, {"a": "1", "b": "x, y"}),
-        (5, {"a": "2", "b": "3"}),
+    assert [(line.number, line.text("a"), line.text("b")) for line in lines] == [
+        (2, "1", "x, y"),
+        (5, "2", "3"),
     ]
     assert lines[1].real("b", 0.0, 3.0) == 3.0
 
@@ -61,6 +61,11 @@ def test_bytes_that_are_no_text_and_huge_files_are_refused(
     path.write_bytes(b"\xff\xfe\x00a")
     with pytest.raises(CaseError, match="cannot be read as CSV"):
         read_csv(path)
+
+    long = written(tmp_path, "a\n1\n2\n")
+    monkeypatch.setattr(csv_file, "MAX_LINES", 2)
+    with pytest.raises(CaseError, match="has 3 lines; up to 2 are allowed"):
+        read_csv(long)
 
     monkeypatch.setattr(csv_file, "MAX_FILE_BYTES", 3)
     with pytest.raises(CaseError, match="is larger than 3 bytes"):

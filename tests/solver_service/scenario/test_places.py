@@ -8,13 +8,16 @@ from solver_service.scenario.places import read_points
 from tests.solver_service.tiny_case import CASE, GAUGES, write_case
 
 
-def test_gauges_then_section_points_are_recorded_by_the_solver(tmp_path: Path) -> None:
+def test_gauges_and_sections_are_recorded_by_the_solver(tmp_path: Path) -> None:
     case = load_case(write_case(tmp_path, CASE + GAUGES))
 
     assert [gauge.id for gauge in case.gauges] == ["upper", "lower"]
-    assert case.params.gauges[:2] == ((5.0, 12.0), (15.0, 12.0))
-    assert len(case.params.gauges) == 2 + case.sections[0].x.size == 26
-    assert {col for col, _ in case.params.gauges[2:]} == {10.0}
+    assert case.params.gauges == ((5.0, 12.0), (15.0, 12.0))
+    (section,) = case.params.sections
+    assert (section.id, section.line) == ("dam", ((9.5, 23.5), (9.5, -0.5)))
+    assert {tuple(face) for face in section.chain(case.grid.shape).faces.tolist()} == {
+        (row, 9, 0) for row in range(24)
+    }
 
 
 def test_gauges_of_a_file_follow_those_of_the_case(tmp_path: Path) -> None:
@@ -45,10 +48,13 @@ def test_a_gauge_on_the_outer_edge_takes_the_last_cell(tmp_path: Path) -> None:
         ('[[gauge]]\nid = "a"\nat = [1100.0]', "a point"),
         ('[[gauge]]\nname = "a"\nat = [1100.0, 2100.0]', "unknown key 'name'"),
         ('[[section]]\nid = "s"\nline = [[1100.0, 2100.0]]', "2 to 4096 points"),
-        ('[[section]]\nid = "s"\nline = [[1100.0, 2100.0], [1100.0, 2100.0]]', "a line of some length"),
+        (
+            '[[section]]\nid = "s"\nline = [[1100.0, 2100.0], [1100.0, 2100.0]]',
+            "differ each from the one",
+        ),
         (
             '[[section]]\nid = "s"\nline = [[1100.0, 2100.0], [9.0, 9.0]]',
-            r"section 's' is at \(9, 9\), outside",
+            r"\(9, 9\) lies off the terrain",
         ),
     ],
 )
