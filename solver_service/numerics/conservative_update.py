@@ -26,6 +26,21 @@ maxima = wp.types.vector(length=9, dtype=wp.float32)
 
 
 @wp.func
+def film_speed(courant: float, depth_cfl: float, dt: float) -> float:
+    """Speed along x or y [m/s] with which water as deep as `depth_cfl` asks for no step shorter than dt.
+
+    `courant` is cfl dx [m].
+    """
+    return wp.max(courant / dt - wp.sqrt(GRAVITY * depth_cfl), 0.0)
+
+
+@wp.func
+def limited(x: float, most: float) -> float:
+    """X within -most and most; what is not a number stays so (min and max would hide it)."""
+    return wp.where(x > most, most, wp.where(x < -most, -most, x))
+
+
+@wp.func
 def update_cell(
     h: float,
     u: float,
@@ -49,10 +64,13 @@ def update_cell(
     dt: float,
     dx: float,
     depth_dry: float,
+    depth_cfl: float,
+    film_speed: float,
 ) -> wp.vec4:
     """Depth, velocities and speed after the step.
 
-    `e_x`, `e_y` are half the differences of eta inside the cell [m]; `drag` is g n^2 [m^(1/3)].
+    `e_x`, `e_y` are half the differences of eta inside the cell [m]; `drag` is g n^2 [m^(1/3)]. Water no
+    deeper than `depth_cfl` is no faster than `film_speed` along x or y.
     """
     r = dt / dx
     h_new = h - ((mass_e - mass_w) + (mass_n - mass_s))
@@ -65,12 +83,13 @@ def update_cell(
     v_free = hv * inverse
     speed = wp.sqrt(u_free * u_free + v_free * v_free)
     factor = friction_factor(h_floor, speed, drag, dt)
-    moving = h_new > depth_dry
+    fastest = wp.where(h_new > depth_cfl, 1.0e30, film_speed)
+    fastest = wp.where(h_new > depth_dry, fastest, 0.0)
     return wp.vec4(
         h_new,
-        wp.where(moving, u_free * factor, 0.0),
-        wp.where(moving, v_free * factor, 0.0),
-        wp.where(moving, speed * factor, 0.0),
+        limited(u_free * factor, fastest),
+        limited(v_free * factor, fastest),
+        limited(speed * factor, fastest),
     )
 
 

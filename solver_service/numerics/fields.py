@@ -70,6 +70,9 @@ class Scheme:
     contact: wp.float32
     depth_dry: wp.float32
     depth_film: wp.float32
+    depth_cfl: wp.float32
+    eddy: wp.float32
+    courant: wp.float32
     depth_arrival: wp.float32
     nrows: wp.int32
     ncols: wp.int32

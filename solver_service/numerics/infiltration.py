@@ -90,7 +90,7 @@ class Infiltration:
 
     def _check_zones(self, count: int) -> None:
         object.__setattr__(self, "zone", np.ascontiguousarray(self.zone, np.int32))
-        zone = np.atleast_2d(self.zone)
+        zone = np.atleast_2d(np.asarray(self.zone))
         bad = np.argwhere((zone < 0) | (zone >= count))
         if bad.size:
             row, col = bad[0]

@@ -31,6 +31,10 @@ class SolverParams:
     """Water no deeper than this has no velocity [m]."""
     depth_film: float = 1e-5
     """Water no deeper than this does not move at all [m]; at most depth_dry."""
+    depth_cfl: float = 5e-3
+    """Water no deeper than this never shortens the time step: it is no faster than the step allows [m]."""
+    eddy_viscosity: float = 6.0
+    """c in the eddy viscosity c u* h of the shear between streams [1]; 0 for none."""
     depth_arrival: float = 0.01
     """Depth at which water counts as arrived [m]."""
     arrival_depths: tuple[float, ...] = ()
@@ -58,6 +62,8 @@ class SolverParams:
         self._check("limiter_theta", 1.0 <= self.limiter_theta < 2.0, "1 <= limiter_theta < 2")
         self._check("depth_dry", 1e-6 <= self.depth_dry <= 0.1, "0.000001 to 0.1 m")
         self._check("depth_film", 1e-8 <= self.depth_film <= self.depth_dry, "0.00000001 m to depth_dry")
+        self._check("depth_cfl", 0.0 <= self.depth_cfl <= 0.05, "0 to 0.05 m")
+        self._check("eddy_viscosity", 0.0 <= self.eddy_viscosity <= 100.0, "0 to 100")
         self._check("depth_arrival", 0.0 < self.depth_arrival < math.inf, "a positive depth in m")
         depths_hold = all(0.0 < depth < math.inf for depth in self.arrival_depths)
         is_rising = all(a < b for a, b in itertools.pairwise(self.arrival_depths))

@@ -15,10 +15,12 @@ larger than the rounding of the depths it is made of (`LEVEL_TOLERANCE`): a floa
 exactly level, and nothing that float32 depths can express is lost. A cell no deeper than `depth_dry`
 carries no momentum and has no slopes.
 
-Velocity slopes fade between bed slopes of 0.2 and 0.6 to the next cell: on banks that steep shallow-water
-theory no longer holds, and linear velocities beside a bank of raster steps tear the flow off it. In the
-gorge of Malpasset that costs a tenth of the discharge and raises the water by 6 m above the observed mark;
-gentle beds see no difference.
+Turbulence exchanges momentum between streams that pass each other, with the eddy viscosity nu = c u* h;
+u* = |u| sqrt(g n^2 h^(-1/3)) is the friction velocity, and c = 6 has the size of Elder's 5.93 [Elder1959].
+A cell offers to mix h nu / dx over a face (`mixing`, see `riemann`). Without it jets beside the banks of a
+gorge do not spread: at Malpasset the water then stands 12 m above the first observed mark, with it 0.4 m.
+Normal stresses are left out: along the flow they would blur the front of a dam break on a rough bed, whose
+error they raise by 60 %. nu is limited to 0.1 dx^2 / dt, less than half of what an explicit step allows.
 
 The depth that leaves through the four faces in one step must not exceed h. The flux that a face may draw
 from its donor is capped by a share of its depth that the donor alone decides (`share`): with the outflow
@@ -40,17 +42,15 @@ Rounding alone gives less than 2^-23 = 1.2e-7. A larger tolerance would hold sma
 the measured order in smooth flow falls from 1.96 to 1.78.
 """
 
-SLOPE_STEEP = wp.constant(0.6)
-"""Bed slope from which on velocities are constant in a cell [1]."""
-
-SLOPE_WEIGHT = wp.constant(2.5)
-"""Inverse of the range of bed slopes, 0.2 to 0.6, over which their slopes fade [1]."""
+MIXING_LIMIT = wp.constant(0.1)
+"""Largest eddy viscosity in units of dx^2 / dt [1]."""
 
 DRAIN_LIMIT = wp.constant(0.999)
 """Part of a cell's water that may leave in one step [1]; the rest is room for rounding."""
 
-prediction = wp.types.vector(length=13, dtype=wp.float32)
-"""h' u' v', half slopes h u v z_b along x, the same along y, celerity, share of the outflow bound."""
+prediction = wp.types.vector(length=14, dtype=wp.float32)
+"""h' u' v', half slopes h u v z_b along x, the same along y, celerity, share of the outflow bound,
+mixing."""
 
 
 @wp.func
@@ -98,27 +98,27 @@ def predict(
     depth_dry: float,
     depth_film: float,
     hancock: float,
+    eddy: float,
 ) -> prediction:
     """State at half time, half slopes and outflow share of a cell from itself and its four neighbours.
 
-    `drag` is g n^2 [m^(1/3)], `hancock` is 1 for second order in time and 0 for none.
+    `drag` is g n^2 [m^(1/3)], `hancock` is 1 for second order in time and 0 for none, `eddy` c in
+    c u* h.
     """
     t = wp.where(h > depth_dry, theta, 0.0)
-    step = wp.max(wp.max(wp.abs(z_w - z), wp.abs(z_e - z)), wp.max(wp.abs(z_s - z), wp.abs(z_n - z)))
-    gentle = wp.max(wp.min((SLOPE_STEEP * dx - step) * (SLOPE_WEIGHT / dx), 1.0), 0.0)
-    t_u = gentle * t
-    u_x = limited_slope(u - u_w, u_e - u, t_u)
-    v_x = limited_slope(v - v_w, v_e - v, t_u)
+    u_x = limited_slope(u - u_w, u_e - u, t)
+    v_x = limited_slope(v - v_w, v_e - v, t)
     e_x = limited_slope(surface_step(h_w, h, z_w, z), surface_step(h, h_e, z, z_e), t)
     h_x = wp.max(wp.min(e_x - limited_slope(z - z_w, z_e - z, t), 2.0 * h), -2.0 * h)
-    u_y = limited_slope(u - u_s, u_n - u, t_u)
-    v_y = limited_slope(v - v_s, v_n - v, t_u)
+    u_y = limited_slope(u - u_s, u_n - u, t)
+    v_y = limited_slope(v - v_s, v_n - v, t)
     e_y = limited_slope(surface_step(h_s, h, z_s, z), surface_step(h, h_n, z, z_n), t)
     h_y = wp.max(wp.min(e_y - limited_slope(z - z_s, z_n - z, t), 2.0 * h), -2.0 * h)
 
     k = hancock * half_dt / dx
     root = inverse_cube_root(wp.max(h, depth_dry))
-    decay = drag * ((root * root) * (root * root)) * wp.sqrt(u * u + v * v)
+    speed = wp.sqrt(u * u + v * v)
+    decay = drag * ((root * root) * (root * root)) * speed
     damping = 1.0 / (1.0 + hancock * half_dt * decay)
     h_p = wp.max(h - k * ((u * h_x + h * u_x) + (v * h_y + h * v_y)), 0.0)
     u_p = (u - k * ((u * u_x + v * u_y) + GRAVITY * e_x)) * damping
@@ -133,6 +133,8 @@ def predict(
     v_x = 0.5 * v_x
     v_y = 0.5 * v_y
 
+    u_star = speed * wp.sqrt(drag * root)
+    mixing = h * wp.min(eddy * h * u_star / dx, (0.5 * MIXING_LIMIT) * dx / half_dt)
     c = wp.sqrt(GRAVITY * h)
     out_e = (h_p + h_x) * wp.max((u_p + u_x) + c, 0.0)
     out_w = (h_p - h_x) * wp.max((u_x - u_p) + c, 0.0)
@@ -141,4 +143,4 @@ def predict(
     outflow = 2.0 * half_dt * ((out_e + out_w) + (out_n + out_s))
     share = wp.min(1.0, DRAIN_LIMIT * h * dx / wp.max(outflow, 1.0e-12))
     share = wp.where(h > depth_film, share, 0.0)
-    return prediction(h_p, u_p, v_p, h_x, u_x, v_x, z_x, h_y, u_y, v_y, z_y, c, share)
+    return prediction(h_p, u_p, v_p, h_x, u_x, v_x, z_x, h_y, u_y, v_y, z_y, c, share, mixing)

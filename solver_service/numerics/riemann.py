@@ -22,7 +22,10 @@ error.
 Water is moved in whole floats: the depth dt/dx |F| that a face moves is rounded once, to the grid of floats
 at twice the larger depth, so that what one cell gives and the other gets add to their depths without
 rounding. Else a steady river, which rounds the same way in every step, loses 6e-6 of its water in 4500
-steps; so it keeps it to 1e-9.
+steps; so it keeps it to 1e-9. What a cell much shallower than its neighbour gives is rounded down.
+
+Streams that pass each other drag each other along: the tangential momentum flux has the shear stress of the
+eddy viscosity (see `reconstruction`), the smaller of what the two cells offer, where water joins them.
 
 Each cell takes the normal momentum flux relative to the pressure g h*^2 / 2 of its own side, plus the pull
 g h min(z_f - z, 0) of a step. Together with g h (eta_e - eta_w) inside the cell this is the full balance of
@@ -40,6 +43,9 @@ FACE_TOLERANCE = wp.constant(3.0e-7)
 Rounding alone gives less than 2^-22 = 2.4e-7 in a lake at rest; see also `LEVEL_TOLERANCE`.
 """
 
+LAST_PLACE = wp.constant(1.2e-7)
+"""A little more than the distance of a float to the next, in units of it [1]."""
+
 
 @wp.func
 def face_flux(
@@ -52,6 +58,7 @@ def face_flux(
     z_l_slope: float,
     c_l_cell: float,
     share_l: float,
+    mixing_l: float,
     h_r: float,
     h_r_slope: float,
     u_r_centre: float,
@@ -61,6 +68,7 @@ def face_flux(
     z_r_slope: float,
     c_r_cell: float,
     share_r: float,
+    mixing_r: float,
     z_step: float,
     dt_dx: float,
     contact: float,
@@ -130,16 +138,20 @@ def face_flux(
     mixed = 0.5 * ((q_l * v_l + q_r * v_r) + a * (q_l * v_l - q_r * v_r)) + b * (hs_r * v_r - hs_l * v_l)
     tangential = wp.where(contact > 0.5, carried, mixed)
 
+    mixing = wp.where(wp.min(hs_l, hs_r) > 0.0, wp.min(mixing_l, mixing_r), 0.0)
+    tangential = tangential - mixing * (v_r_centre - v_l_centre)
+
     pull_l = GRAVITY * (d_l * wp.min(rise_l, 0.0)) + wp.where(GRAVITY * step >= climb_l * climb_l, ram_l, 0.0)
     pull_r = GRAVITY * (d_r * wp.min(rise_r, 0.0)) + wp.where(
         -GRAVITY * step >= climb_r * climb_r, ram_r, 0.0
     )
     normal_l = (normal + 0.5 * dp) + pull_l
     normal_r = (normal - 0.5 * dp) + pull_r
-    # Rounds to a multiple of the last place of 2 max(h_l, h_r); mirrored faces round alike. A donor too
-    # shallow to pay for that is spared.
+    # Rounds to a multiple of the last place of 2 max(h_l, h_r); mirrored faces round alike. A shallow donor
+    # could not pay for what is rounded up: it gives what is rounded down.
     anchor = 2.0 * wp.max(h_l, h_r)
     donor = wp.where(mass < 0.0, h_r, h_l)
     moved = dt_dx * wp.abs(mass)
-    moved = wp.where(donor > 0.01 * anchor, (moved + anchor) - anchor, moved)
+    moved = wp.where(donor > 0.01 * anchor, moved, wp.max(moved - LAST_PLACE * anchor, 0.0))
+    moved = (moved + anchor) - anchor
     return wp.vec4(wp.where(mass < 0.0, -moved, moved), normal_l, normal_r, tangential)

@@ -16,7 +16,12 @@ Warp.
 
 import warp as wp
 
-from solver_service.numerics.conservative_update import arrival_time, update_cell, widen_maxima
+from solver_service.numerics.conservative_update import (
+    arrival_time,
+    film_speed,
+    update_cell,
+    widen_maxima,
+)
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.reconstruction import predict
 from solver_service.numerics.riemann import face_flux
@@ -28,7 +33,7 @@ CHUNK_COLS = 1024
 NARROW_COLS = 256
 """Chunks up to this wide fetch the rows ahead themselves [cells]."""
 
-SCRATCH_ROWS = 44
+SCRATCH_ROWS = 46
 """Rows of scratch memory per thread."""
 
 _SWEEP = r"""
@@ -40,8 +45,9 @@ _SWEEP = r"""
     const float* __restrict__ z = (const float*)f.z.data;
     const float* __restrict__ drag = (const float*)f.drag.data;
     const float half_dt = 0.5f * dt;
-    const float dx = s.dx, theta = s.theta, hancock = s.hancock, contact = s.contact;
+    const float dx = s.dx, theta = s.theta, hancock = s.hancock, contact = s.contact, eddy = s.eddy;
     const float depth_dry = s.depth_dry, depth_film = s.depth_film, depth_arrival = s.depth_arrival;
+    const float depth_cfl = s.depth_cfl, film_speed = FILM_SPEED(s.courant, depth_cfl, dt);
     const float r = dt / dx;
     double* edge = (double*)f.edge_flow.data;
     const int edge_pitch = f.edge_flow.shape[1];
@@ -50,8 +56,8 @@ _SWEEP = r"""
     const int col0 = chunks[4 * chunk + 2] + 2, count = chunks[4 * chunk + 3] - chunks[4 * chunk + 2];
     // Scratch rows begin one cell west of the chunk: index j is padded column col0 - 1 + j.
     float* __restrict__ scratch = (float*)scratch_array.data + (size_t)scratch_offset;
-    float* __restrict__ waves = scratch + (size_t)38 * span;
-    float* __restrict__ speeds = scratch + (size_t)39 * span;
+    float* __restrict__ waves = scratch + (size_t)40 * span;
+    float* __restrict__ speeds = scratch + (size_t)41 * span;
     for (int j = 0; j < count; ++j) waves[j] = 0.0f;
     const bool narrow = count <= NARROW;
     const float* const written[] = {
@@ -61,8 +67,8 @@ _SWEEP = r"""
         (const float*)f.wet_since.data, (const float*)f.rise_rate_max.data};
 
     for (int i = row0 - 1; i <= row1; ++i) {
-        float* __restrict__ B = scratch + (size_t)((i & 1) * 13) * span;
-        const float* __restrict__ A = scratch + (size_t)(((i - 1) & 1) * 13) * span;
+        float* __restrict__ B = scratch + (size_t)((i & 1) * 14) * span;
+        const float* __restrict__ A = scratch + (size_t)(((i - 1) & 1) * 14) * span;
         const size_t at = (size_t)i * pitch + (col0 - 1);
         const float* __restrict__ hc = h + at; const float* __restrict__ uc = u + at;
         const float* __restrict__ vc = v + at; const float* __restrict__ zc = z + at;
@@ -83,20 +89,21 @@ _SWEEP = r"""
         for (int j = 0; j < count + 2; ++j) {
             auto p = PREDICT(hc[j], uc[j], vc[j], zc[j], hc[j-1], uc[j-1], vc[j-1], zc[j-1],
                 hc[j+1], uc[j+1], vc[j+1], zc[j+1], hs[j], us[j], vs[j], zs[j], hn[j], un[j], vn[j], zn[j],
-                kc[j], half_dt, dx, theta, depth_dry, depth_film, hancock);
+                kc[j], half_dt, dx, theta, depth_dry, depth_film, hancock, eddy);
             B[j] = p[0]; B[span+j] = p[1]; B[2*span+j] = p[2]; B[3*span+j] = p[3]; B[4*span+j] = p[4];
             B[5*span+j] = p[5]; B[6*span+j] = p[6]; B[7*span+j] = p[7]; B[8*span+j] = p[8];
             B[9*span+j] = p[9]; B[10*span+j] = p[10]; B[11*span+j] = p[11]; B[12*span+j] = p[12];
+            B[13*span+j] = p[13];
         }
         if (i == row0 - 1) continue;
 
-        float* __restrict__ N = scratch + (size_t)(26 + (i & 1) * 4) * span;
+        float* __restrict__ N = scratch + (size_t)(28 + (i & 1) * 4) * span;
         #pragma clang loop vectorize(assume_safety) vectorize_width(16)
         for (int j = 1; j <= count; ++j) {
             auto q = FACE(A[j], A[7*span+j], A[2*span+j], A[9*span+j], A[span+j], A[8*span+j], A[10*span+j],
-                A[11*span+j], A[12*span+j],
+                A[11*span+j], A[12*span+j], A[13*span+j],
                 B[j], B[7*span+j], B[2*span+j], B[9*span+j], B[span+j], B[8*span+j], B[10*span+j],
-                B[11*span+j], B[12*span+j], zc[j] - zs[j], r, contact);
+                B[11*span+j], B[12*span+j], B[13*span+j], zc[j] - zs[j], r, contact);
             N[j] = q[0]; N[span+j] = q[1]; N[2*span+j] = q[2]; N[3*span+j] = q[3];
         }
         if (i - 1 == s.nrows + 1)
@@ -105,19 +112,19 @@ _SWEEP = r"""
             for (int j = 1; j <= count; ++j) edge[2*edge_pitch + col0 - 3 + j] -= (double)N[j];
         if (i == row0) continue;
 
-        float* __restrict__ E = scratch + (size_t)34 * span;
+        float* __restrict__ E = scratch + (size_t)36 * span;
         #pragma clang loop vectorize(assume_safety) vectorize_width(16)
         for (int j = 0; j <= count; ++j) {
             auto q = FACE(A[j], A[3*span+j], A[span+j], A[4*span+j], A[2*span+j], A[5*span+j], A[6*span+j],
-                A[11*span+j], A[12*span+j],
+                A[11*span+j], A[12*span+j], A[13*span+j],
                 A[j+1], A[3*span+j+1], A[span+j+1], A[4*span+j+1], A[2*span+j+1], A[5*span+j+1],
-                A[6*span+j+1], A[11*span+j+1], A[12*span+j+1], zs[j+1] - zs[j], r, contact);
+                A[6*span+j+1], A[11*span+j+1], A[12*span+j+1], A[13*span+j+1], zs[j+1] - zs[j], r, contact);
             E[j] = q[0]; E[span+j] = q[1]; E[2*span+j] = q[2]; E[3*span+j] = q[3];
         }
         if (col0 == 2) edge[i - 3] -= (double)E[0];
         if (col0 + count == s.ncols + 2) edge[edge_pitch + i - 3] += (double)E[count];
 
-        const float* __restrict__ S = scratch + (size_t)(26 + ((i - 1) & 1) * 4) * span;
+        const float* __restrict__ S = scratch + (size_t)(28 + ((i - 1) & 1) * 4) * span;
         const size_t to = (size_t)(i - 1) * pitch + (col0 - 1);
         const float* __restrict__ kd = drag + to;
         float* __restrict__ ho = (float*)f.h_out.data + to;
@@ -127,7 +134,8 @@ _SWEEP = r"""
         for (int j = 1; j <= count; ++j) {
             auto q = UPDATE(hs[j], us[j], vs[j], A[j], A[3*span+j] + A[6*span+j], A[7*span+j] + A[10*span+j],
                 E[j], E[span+j], E[3*span+j], E[j-1], E[2*span+j-1], E[3*span+j-1],
-                N[j], N[span+j], N[3*span+j], S[j], S[2*span+j], S[3*span+j], kd[j], dt, dx, depth_dry);
+                N[j], N[span+j], N[3*span+j], S[j], S[2*span+j], S[3*span+j], kd[j], dt, dx, depth_dry,
+                depth_cfl, film_speed);
             ho[j] = q[0]; uo[j] = q[1]; vo[j] = q[2]; speeds[j] = q[3];
         }
         float* __restrict__ m0 = (float*)f.h_max.data + to;
@@ -161,7 +169,7 @@ _SWEEP = r"""
 
 def _with_names(snippet: str) -> str:
     names = {"PREDICT": predict, "FACE": face_flux, "UPDATE": update_cell, "WIDEN": widen_maxima}
-    names["ARRIVAL"] = arrival_time
+    names |= {"ARRIVAL": arrival_time, "FILM_SPEED": film_speed}
     for word, function in names.items():
         snippet = snippet.replace(word + "(", function.native_func + "(")
     snippet = snippet.replace("NARROW", str(NARROW_COLS))
@@ -266,13 +274,16 @@ def step_chunks(
             dt,
             dt,
             dt,
+            dt,
         )
-        b = face_flux(dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt)
+        b = face_flux(
+            dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt
+        )
         c = update_cell(
-            dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt
+            dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt
         )
         d = widen_maxima(dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt, dt)
-        chunk_waves[0] = a[0] + b[0] + c[0] + d[0] + arrival_time(dt, dt, dt, dt)
+        chunk_waves[0] = a[0] + b[0] + c[0] + d[0] + arrival_time(dt, dt, dt, dt) + film_speed(dt, dt, dt)
     chunk = take_chunk(shares, taken, thread)
     while chunk >= 0:
         sweep(f, s, chunk_array, chunk, scratch_array, scratch_offset, scratch_pitch, dt, time, chunk_waves)

@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import warp as wp
 
-from solver_service.errors import ModelError, SolverBlowUp
+from solver_service.errors import ModelError
 from solver_service.numerics.active_tiles import ActiveTiles
 from solver_service.numerics.after_step import changeable_cells, parts_of
 from solver_service.numerics.bed_change import BedChange, change_water, check_bed
+from solver_service.numerics.blow_up import explain_blow_up
 from solver_service.numerics.breach import BreachState
 from solver_service.numerics.breaches import Breaches
 from solver_service.numerics.budget import VolumeBudget, close_budget, stored_volume
@@ -19,7 +20,8 @@ from solver_service.numerics.conduits import Conduits, ConduitState
 from solver_service.numerics.device import pick_device, thread_count, warm_kernels
 from solver_service.numerics.edges import Edges
 from solver_service.numerics.engine import Engine, StepCollapse, StepParts, StopQuestion
-from solver_service.numerics.fields import STATE_NAMES, TILE, FieldStore, FloatRaster, Scheme
+from solver_service.numerics.fastest_cell import fastest_cell
+from solver_service.numerics.fields import TILE, FieldStore, FloatRaster, Scheme
 from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.gauges import GaugeRecorder, GaugeSeries
 from solver_service.numerics.infiltration import GroundUptake
@@ -100,6 +102,9 @@ class ShallowWaterSolver:
         scheme.contact = 1.0 if params.riemann == "hllc" else 0.0
         scheme.depth_dry = params.depth_dry
         scheme.depth_film = params.depth_film
+        scheme.depth_cfl = params.depth_cfl
+        scheme.eddy = params.eddy_viscosity
+        scheme.courant = params.cfl * self.model.dx
         scheme.depth_arrival = params.depth_arrival
         scheme.nrows, scheme.ncols = self.model.shape
         return scheme
@@ -180,12 +185,7 @@ class ShallowWaterSolver:
 
     def _water_changed(self) -> None:
         at_edges = self._edges.wave_speed(self.time, self._dt_max)
-        self._engine.wave_speed = max(float(self._wave_speeds().max()), at_edges)
-
-    def _wave_speeds(self) -> FloatRaster:
-        h, u, v = (self._store.interior(name) for name in STATE_NAMES)
-        with np.errstate(all="ignore"):  # after a blow-up anything may stand here
-            return np.maximum(np.abs(u), np.abs(v)) + np.sqrt(np.float32(GRAVITY) * h)
+        self._engine.wave_speed = max(fastest_cell(self._store).wave, at_edges)
 
     # --- time ------------------------------------------------------------------------------------
 
@@ -202,7 +202,7 @@ class ShallowWaterSolver:
     @property
     def dt(self) -> float:
         """Time step that stability allows now [s]."""
-        wave = float(self._wave_speeds().max())
+        wave = fastest_cell(self._store).wave
         return min(self._engine.parts.courant / wave, self._dt_max) if wave > 0.0 else self._dt_max
 
     def advance_to(self, time: float, should_stop: StopQuestion | None = None) -> bool:
@@ -226,28 +226,13 @@ class ShallowWaterSolver:
         try:
             return self._engine.advance(float(time), should_stop)
         except StepCollapse:
-            raise self._blow_up() from None
-
-    def _blow_up(self) -> SolverBlowUp:
-        for name, unit in (("h", "m"), ("u", "m/s"), ("v", "m/s")):
-            values = self._store.interior(name)
-            bad = np.argwhere(~np.isfinite(values) | (values < 0.0 if name == "h" else False))
-            if bad.size:
-                row, col = (int(k) for k in bad[0])
-                cause = "likely a bed, roughness or inflow value far out of range near it"
-                return SolverBlowUp(self.time, row, col, f"{name} is {values[row, col]} {unit}", cause)
-        row, col = self.limiting_cell()
-        speed = float(self._wave_speeds()[row, col])
-        floor = self.params.dt_min
-        cause = "likely a bed step or an inflow that is too steep for the cell size"
-        return SolverBlowUp(
-            self.time, row, col, f"the wave speed {speed:g} m/s asks for dt < {floor:g} s", cause
-        )
+            courant, dt_min = self._engine.parts.courant, self.params.dt_min
+            raise explain_blow_up(self.model, self._store, self.time, dt_min, courant) from None
 
     def limiting_cell(self) -> tuple[int, int]:
         """Row and column of the cell that decides the time step."""
-        row, col = divmod(int(np.argmax(self._wave_speeds())), self.model.shape[1])
-        return row, col
+        fastest = fastest_cell(self._store)
+        return fastest.row, fastest.col
 
     # --- what there is -----------------------------------------------------------------------------
 

@@ -9,7 +9,7 @@ launch, hence the captured graph, does not depend on how many tiles are active.
 import warp as wp
 
 from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_TIME
-from solver_service.numerics.conservative_update import arrival_time, update_cell, widen_maxima
+from solver_service.numerics.conservative_update import arrival_time, film_speed, update_cell, widen_maxima
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.reconstruction import predict, prediction
 from solver_service.numerics.riemann import face_flux
@@ -50,6 +50,7 @@ def predict_at(f: Fields, s: Scheme, i: int, j: int, half_dt: float) -> predicti
         s.depth_dry,
         s.depth_film,
         s.hancock,
+        s.eddy,
     )
 
 
@@ -57,8 +58,8 @@ def predict_at(f: Fields, s: Scheme, i: int, j: int, half_dt: float) -> predicti
 def flux_x(l: prediction, r: prediction, z_step: float, dt_dx: float, contact: float) -> wp.vec4:
     """Flux through the face between a western and an eastern cell."""
     return face_flux(
-        l[0], l[3], l[1], l[4], l[2], l[5], l[6], l[11], l[12],
-        r[0], r[3], r[1], r[4], r[2], r[5], r[6], r[11], r[12],
+        l[0], l[3], l[1], l[4], l[2], l[5], l[6], l[11], l[12], l[13],
+        r[0], r[3], r[1], r[4], r[2], r[5], r[6], r[11], r[12], r[13],
         z_step, dt_dx, contact,
     )  # fmt: skip
 
@@ -67,8 +68,8 @@ def flux_x(l: prediction, r: prediction, z_step: float, dt_dx: float, contact: f
 def flux_y(l: prediction, r: prediction, z_step: float, dt_dx: float, contact: float) -> wp.vec4:
     """Flux through the face between a southern and a northern cell; v is normal."""
     return face_flux(
-        l[0], l[7], l[2], l[9], l[1], l[8], l[10], l[11], l[12],
-        r[0], r[7], r[2], r[9], r[1], r[8], r[10], r[11], r[12],
+        l[0], l[7], l[2], l[9], l[1], l[8], l[10], l[11], l[12], l[13],
+        r[0], r[7], r[2], r[9], r[1], r[8], r[10], r[11], r[12], r[13],
         z_step, dt_dx, contact,
     )  # fmt: skip
 
@@ -91,7 +92,7 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> f
         h, u, v, c[0], c[3] + c[6], c[7] + c[10],
         e[0], e[1], e[3], w[0], w[2], w[3],
         n[0], n[1], n[3], b[0], b[2], b[3],
-        f.drag[i, j], dt, s.dx, s.depth_dry,
+        f.drag[i, j], dt, s.dx, s.depth_dry, s.depth_cfl, film_speed(s.courant, s.depth_cfl, dt),
     )  # fmt: skip
     if j == 2:
         f.edge_flow[0, i - 2] = f.edge_flow[0, i - 2] - wp.float64(w[0])

@@ -21,7 +21,7 @@ bit.
 import warp as wp
 
 from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_TIME
-from solver_service.numerics.conservative_update import update_cell, widen_maxima
+from solver_service.numerics.conservative_update import film_speed, update_cell, widen_maxima
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.reconstruction import predict
 from solver_service.numerics.riemann import face_flux
@@ -39,7 +39,7 @@ LISTED = wp.constant(0)
 ASLEEP = wp.constant(1)
 """Place of the number of tiles that have fallen asleep."""
 
-SHARED_FLOATS = 5 * 400 + 13 * 324 + 4 * 544
+SHARED_FLOATS = 5 * 400 + 14 * 324 + 4 * 544
 """Floats in shared memory: loaded cells, predictions, fluxes."""
 
 SHARED_WORDS = 2
@@ -74,7 +74,7 @@ STEP_SOURCE = (
     float* const Z = shared + 1200;
     float* const D = shared + 1600;
     float* const P = shared + 2000;
-    float* const X = shared + 2000 + 13 * 324;
+    float* const X = shared + 2000 + 14 * 324;
     float* const Y = X + 4 * 272;
     for (int k = lane; k < WORDS; k += lanes) words[k] = 0;
     WP_TILE_SYNC();
@@ -118,8 +118,8 @@ STEP_SOURCE = (
             auto p = PREDICT(H[o], U[o], V[o], Z[o], H[o-1], U[o-1], V[o-1], Z[o-1],
                 H[o+1], U[o+1], V[o+1], Z[o+1], H[o-20], U[o-20], V[o-20], Z[o-20],
                 H[o+20], U[o+20], V[o+20], Z[o+20],
-                D[o], 0.5f * dt, s.dx, s.theta, s.depth_dry, s.depth_film, s.hancock);
-            UNROLL for (int m = 0; m < 13; ++m) P[324 * m + t] = p[m];
+                D[o], 0.5f * dt, s.dx, s.theta, s.depth_dry, s.depth_film, s.hancock, s.eddy);
+            UNROLL for (int m = 0; m < 14; ++m) P[324 * m + t] = p[m];
         }
     WP_TILE_SYNC();
 
@@ -132,9 +132,9 @@ STEP_SOURCE = (
             const float* const R = L + 1;
             const int o = 20 * (r + 2) + (c + 1);
             auto q = FACE(L[0], L[3*324], L[1*324], L[4*324], L[2*324], L[5*324], L[6*324],
-                L[11*324], L[12*324],
+                L[11*324], L[12*324], L[13*324],
                 R[0], R[3*324], R[1*324], R[4*324], R[2*324], R[5*324], R[6*324],
-                R[11*324], R[12*324],
+                R[11*324], R[12*324], R[13*324],
                 Z[o + 1] - Z[o], dt_dx, s.contact);
             UNROLL for (int m = 0; m < 4; ++m) X[272 * m + k] = q[m];
         }
@@ -144,9 +144,9 @@ STEP_SOURCE = (
             const float* const R = L + 18;
             const int o = 20 * (r + 1) + (c + 2);
             auto q = FACE(L[0], L[7*324], L[2*324], L[9*324], L[1*324], L[8*324], L[10*324],
-                L[11*324], L[12*324],
+                L[11*324], L[12*324], L[13*324],
                 R[0], R[7*324], R[2*324], R[9*324], R[1*324], R[8*324], R[10*324],
-                R[11*324], R[12*324],
+                R[11*324], R[12*324], R[13*324],
                 Z[o + 20] - Z[o], dt_dx, s.contact);
             UNROLL for (int m = 0; m < 4; ++m) Y[272 * m + k] = q[m];
         }
@@ -154,6 +154,7 @@ STEP_SOURCE = (
     WP_TILE_SYNC();
 
     // update
+    const float film_speed = FILM_SPEED(s.courant, s.depth_cfl, dt);
     int highest = 0;
     for (int k = lane; k < 256; k += lanes) {
         const int r = k / 16, c = k % 16;
@@ -169,7 +170,8 @@ STEP_SOURCE = (
             const float* const N = S + 16;
             q = UPDATE(H[o], U[o], V[o], C[0], C[3*324] + C[6*324], C[7*324] + C[10*324],
                 E[0], E[272], E[3*272], W[0], W[2*272], W[3*272],
-                N[0], N[272], N[3*272], S[0], S[2*272], S[3*272], D[o], dt, s.dx, s.depth_dry);
+                N[0], N[272], N[3*272], S[0], S[2*272], S[3*272], D[o], dt, s.dx, s.depth_dry,
+                s.depth_cfl, film_speed);
             double* const edge = (double*)f.edge_flow.data;
             const int edge_pitch = f.edge_flow.shape[1];
             if (col == 0) edge[row] -= (double)W[0];
@@ -240,6 +242,7 @@ _COPY = r"""
 def with_names(snippet: str) -> str:
     """Native source with the names that Warp gave to the functions it generates."""
     names = {"PREDICT": predict, "FACE": face_flux, "UPDATE": update_cell, "WIDEN": widen_maxima}
+    names["FILM_SPEED"] = film_speed
     for word, function in names.items():
         snippet = snippet.replace(word + "(", function.native_func + "(")
     return (

@@ -72,11 +72,12 @@ def take_step(
         return [q[1 + rows : 1 + rows + nrows, 1 + cols : 1 + cols + ncols] for q in ghosted]
 
     second = float(params.order == 2)
-    # h' u' v', half slopes of h u v z_b along x and along y, celerity, share: the cells and one ring around.
+    # h' u' v', half slopes of h u v z_b along x and along y, celerity, share, mixing: cells and one ring.
     p = STEP.predict(
         *shifted(0, 0), *shifted(0, -1), *shifted(0, 1), *shifted(-1, 0), *shifted(1, 0),
         drag[1:-1, 1:-1], 0.5 * dt, dx,
         params.limiter_theta * second, params.depth_dry, params.depth_film, second,
+        params.eddy_viscosity,
     )  # fmt: skip
     contact = 1.0 if params.riemann == "hllc" else 0.0
 
@@ -86,8 +87,8 @@ def take_step(
         return STEP.face_flux(*sides, step, dt / dx, contact)
 
     inner = slice(1, -1)
-    x = fluxes((0, 3, 1, 4, 2, 5, 6, 11, 12), (inner, slice(None, -1)), (inner, slice(1, None)))
-    y = fluxes((0, 7, 2, 9, 1, 8, 10, 11, 12), (slice(None, -1), inner), (slice(1, None), inner))
+    x = fluxes((0, 3, 1, 4, 2, 5, 6, 11, 12, 13), (inner, slice(None, -1)), (inner, slice(1, None)))
+    y = fluxes((0, 7, 2, 9, 1, 8, 10, 11, 12, 13), (slice(None, -1), inner), (slice(1, None), inner))
     west, east = [q[:, :-1] for q in x], [q[:, 1:] for q in x]
     south, north = [q[:-1] for q in y], [q[1:] for q in y]
     cell = [q[inner, inner] for q in p]
@@ -95,7 +96,8 @@ def take_step(
         h, u, v, cell[0], cell[3] + cell[6], cell[7] + cell[10],
         east[0], east[1], east[3], west[0], west[2], west[3],
         north[0], north[1], north[3], south[0], south[2], south[3],
-        drag[2:-2, 2:-2], dt, dx, params.depth_dry,
+        drag[2:-2, 2:-2], dt, dx, params.depth_dry, params.depth_cfl,
+        STEP.film_speed(params.cfl * dx, params.depth_cfl, dt),
     )  # fmt: skip
     around = ghosted[0]
     deepest = np.maximum.reduce([
