@@ -57,7 +57,7 @@ class ActiveTiles:
         launches = [
             wp.launch(
                 classify_tiles,
-                dim=self.rows * self.cols,
+                dim=self.rows,
                 inputs=[
                     *state,
                     fields.h_out,
@@ -76,7 +76,7 @@ class ActiveTiles:
             ),
             wp.launch(
                 list_active_tiles,
-                dim=self.rows * self.cols,
+                dim=self.rows,
                 inputs=[*state, self._quadrants, store.nrows, store.ncols, self.rows, self.cols],
                 outputs=[
                     fields.h_out,

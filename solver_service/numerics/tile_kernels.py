@@ -12,6 +12,9 @@ itself.
 
 A tile's wave speed is kept while it sleeps and counts for the time step until it has been computed once
 after waking.
+
+These kernels take a row of tiles per thread, as suits CPUs; `tile_list_kernels` makes the same lists on
+GPUs.
 """
 
 import warp as wp
@@ -63,38 +66,37 @@ def classify_tiles(
         tile_count: [1], set to zero.
         rest_wave: [2], set to zero.
     """
-    tile = wp.tid()
-    if tile == 0:
+    r = wp.tid()
+    if r == 0:
         tile_count[0] = 0
         rest_wave[0] = 0.0
         rest_wave[1] = 0.0
         is_first[1] = is_first[0]
-    found = int(0)
     first = is_first[0]
     wet = wp.max(first, is_wet_lively)
-    if forced[tile] == 1:
-        found = EVERY_QUADRANT
-    elif active[tile] == 1 or first == 1:
-        row0 = (tile // tile_cols) * SIDE
-        col0 = (tile % tile_cols) * SIDE
-        for quadrant in range(4):
-            i0 = row0 + (quadrant // 2) * HALF + 2
-            j0 = col0 + (quadrant % 2) * HALF + 2
-            i1 = wp.min(i0 + HALF, nrows + 2)
-            j1 = wp.min(j0 + HALF, ncols + 2)
-            lively = int(0)
-            i = int(i0)
-            while i < i1 and lively == 0:
-                j = int(j0)
-                while j < j1 and lively == 0:
-                    if h[i, j] > depth_film:
-                        if wet == 1 or u[i, j] != 0.0 or v[i, j] != 0.0 or h[i, j] != h_before[i, j]:
-                            lively = 1
-                    j += 1
-                i += 1
-            if lively == 1:
-                found = found | (1 << quadrant)
-    quadrants[tile] = found
+    for tile in range(r * tile_cols, (r + 1) * tile_cols):
+        found = int(0)
+        if forced[tile] == 1:
+            found = EVERY_QUADRANT
+        elif active[tile] == 1 or first == 1:
+            for quadrant in range(4):
+                i0 = r * SIDE + (quadrant // 2) * HALF + 2
+                j0 = (tile - r * tile_cols) * SIDE + (quadrant % 2) * HALF + 2
+                i1 = wp.min(i0 + HALF, nrows + 2)
+                j1 = wp.min(j0 + HALF, ncols + 2)
+                lively = int(0)
+                i = int(i0)
+                while i < i1 and lively == 0:
+                    j = int(j0)
+                    while j < j1 and lively == 0:
+                        if h[i, j] > depth_film:
+                            if wet == 1 or u[i, j] != 0.0 or v[i, j] != 0.0 or h[i, j] != h_before[i, j]:
+                                lively = 1
+                        j += 1
+                    i += 1
+                if lively == 1:
+                    found = found | (1 << quadrant)
+        quadrants[tile] = found
 
 
 @wp.func
@@ -109,20 +111,26 @@ def quadrants_at(
 
 
 @wp.func
-def quadrants_near(
+def column_quadrants(
     quadrants: wp.array(dtype=wp.int32), r: int, c: int, tile_rows: int, tile_cols: int
 ) -> int:
-    """Bits of the lively quadrants that a tile holds or touches; 0 where it may sleep."""
-    near = quadrants_at(quadrants, r, c, tile_rows, tile_cols)
-    near = near | (quadrants_at(quadrants, r, c - 1, tile_rows, tile_cols) & 10)
-    near = near | (quadrants_at(quadrants, r, c + 1, tile_rows, tile_cols) & 5)
-    near = near | (quadrants_at(quadrants, r - 1, c, tile_rows, tile_cols) & 12)
-    near = near | (quadrants_at(quadrants, r + 1, c, tile_rows, tile_cols) & 3)
-    near = near | (quadrants_at(quadrants, r - 1, c - 1, tile_rows, tile_cols) & 8)
-    near = near | (quadrants_at(quadrants, r - 1, c + 1, tile_rows, tile_cols) & 4)
-    near = near | (quadrants_at(quadrants, r + 1, c - 1, tile_rows, tile_cols) & 2)
-    near = near | (quadrants_at(quadrants, r + 1, c + 1, tile_rows, tile_cols) & 1)
-    return near
+    """Quadrant bits of tile (r, c), above them those of its northern, then of its southern neighbour."""
+    own = quadrants_at(quadrants, r, c, tile_rows, tile_cols)
+    north = quadrants_at(quadrants, r + 1, c, tile_rows, tile_cols)
+    south = quadrants_at(quadrants, r - 1, c, tile_rows, tile_cols)
+    return own | (north << 4) | (south << 8)
+
+
+@wp.func
+def near_bits(west: int, here: int, east: int) -> int:
+    """Bits of the lively quadrants that a tile holds or touches; 0 where it may sleep.
+
+    Arguments are the `column_quadrants` of the tile and of its western and eastern neighbour.
+    """
+    own = (here & 15) | (west & 10) | (east & 5)
+    north = (here & 0x30) | (west & 0x20) | (east & 0x10)
+    south = (here & 0xC00) | (west & 0x800) | (east & 0x400)
+    return own | north | south
 
 
 @wp.kernel(module=SUPPORT_MODULE)
@@ -150,35 +158,46 @@ def list_active_tiles(
 
     `rest_wave` gets the largest wave speed [m/s] of the tiles that sleep, and of those that wake now.
     """
-    tile = wp.tid()
-    r = tile // tile_cols
-    c = tile % tile_cols
-    near = quadrants_near(quadrants, r, c, tile_rows, tile_cols)
-    was_active = active[tile]
-    if is_first[1] == 1:
-        tile_wave[tile] = 0.0
-    if (is_first[1] == 1 and quadrants[tile] != 0) or (near == 0 and was_active == 1):
-        row0 = r * SIDE + 2
-        col0 = c * SIDE + 2
-        wave = float(0.0)
-        for i in range(row0, wp.min(row0 + SIDE, nrows + 2)):
-            for j in range(col0, wp.min(col0 + SIDE, ncols + 2)):
-                wave = wp.max(wave, wp.max(wp.abs(u[i, j]), wp.abs(v[i, j])) + wp.sqrt(GRAVITY * h[i, j]))
-                if near == 0 and was_active == 1:
-                    h_out[i, j] = h[i, j]
-                    u_out[i, j] = u[i, j]
-                    v_out[i, j] = v[i, j]
-        # In the first list a film counts for nothing, asleep or not: nothing may depend on the past.
-        if is_first[1] == 0 or quadrants[tile] != 0:
-            tile_wave[tile] = wave
-    if near == 0:
-        wp.atomic_max(rest_wave, 0, tile_wave[tile])
-    elif is_first[1] == 1 or was_active == 0:
-        wp.atomic_max(rest_wave, 1, tile_wave[tile])
-    if near != 0:
-        tiles[wp.atomic_add(tile_count, 0, 1)] = tile
-        active[tile] = 1
-    else:
-        active[tile] = 0
-    if tile == 0:
+    r = wp.tid()
+    first = is_first[1]
+    rest = float(0.0)
+    waking = float(0.0)
+    west = int(0)
+    here = column_quadrants(quadrants, r, 0, tile_rows, tile_cols)
+    for c in range(tile_cols):
+        east = column_quadrants(quadrants, r, c + 1, tile_rows, tile_cols)
+        near = near_bits(west, here, east)
+        own = here & EVERY_QUADRANT
+        west = here
+        here = east
+        tile = r * tile_cols + c
+        was_active = active[tile]
+        if first == 1:
+            tile_wave[tile] = 0.0
+        if (first == 1 and own != 0) or (near == 0 and was_active == 1):
+            row0 = r * SIDE + 2
+            col0 = c * SIDE + 2
+            wave = float(0.0)
+            for i in range(row0, wp.min(row0 + SIDE, nrows + 2)):
+                for j in range(col0, wp.min(col0 + SIDE, ncols + 2)):
+                    fastest = wp.max(wp.abs(u[i, j]), wp.abs(v[i, j]))
+                    wave = wp.max(wave, fastest + wp.sqrt(GRAVITY * h[i, j]))
+                    if near == 0 and was_active == 1:
+                        h_out[i, j] = h[i, j]
+                        u_out[i, j] = u[i, j]
+                        v_out[i, j] = v[i, j]
+            # In the first list a film counts for nothing, asleep or not: nothing may depend on the past.
+            if first == 0 or own != 0:
+                tile_wave[tile] = wave
+        if near != 0:
+            if first == 1 or was_active == 0:
+                waking = wp.max(waking, tile_wave[tile])
+            tiles[wp.atomic_add(tile_count, 0, 1)] = tile
+            active[tile] = 1
+        else:
+            rest = wp.max(rest, tile_wave[tile])
+            active[tile] = 0
+    wp.atomic_max(rest_wave, 0, rest)
+    wp.atomic_max(rest_wave, 1, waking)
+    if r == 0:
         is_first[0] = 0

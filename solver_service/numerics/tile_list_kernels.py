@@ -19,7 +19,7 @@ from solver_service.numerics.clock_kernels import (
     COUNT_STEPS,
 )
 from solver_service.numerics.friction import GRAVITY
-from solver_service.numerics.tile_kernels import quadrants_near
+from solver_service.numerics.tile_kernels import column_quadrants, near_bits
 from solver_service.numerics.tile_step_kernels import ASLEEP, LANES, LISTED, lane_count, never
 from solver_service.numerics.warp_modules import STEP_MODULE
 
@@ -195,7 +195,13 @@ def list_tiles(
 ):
     """List the tiles to step, and those that fall asleep; see `list_active_tiles`."""
     tile = wp.tid()
-    near = quadrants_near(quadrants, tile // tile_cols, tile % tile_cols, tile_rows, tile_cols)
+    r = tile // tile_cols
+    c = tile % tile_cols
+    near = near_bits(
+        column_quadrants(quadrants, r, c - 1, tile_rows, tile_cols),
+        column_quadrants(quadrants, r, c, tile_rows, tile_cols),
+        column_quadrants(quadrants, r, c + 1, tile_rows, tile_cols),
+    )
     was_active = active[tile]
     wave = tile_wave[tile]
     slot = wp.where(near == 0, 0, 1)
