@@ -101,7 +101,6 @@ WRONG: list[Any] = [
     [[]],
     [math.nan, math.nan],
     [[0.0, 0.0], [1e308, -1e308], [5.0, math.inf]],
-    [[1100.0, 2100.0]] * 5000,
     {},
     {"level": {"level": {}}},
     [{}, {}],
@@ -163,3 +162,11 @@ def test_a_wrong_value_is_a_case_or_one_sentence(folder: Path, table: str, key: 
             assert len(message) < 1000
 
     assert refused >= len(WRONG) // 2
+
+
+@pytest.mark.parametrize(("table", "key"), [place for place in PLACES if place[1] in ("line", "polygon")])
+def test_a_line_of_far_too_many_points_is_refused(folder: Path, table: str, key: str) -> None:
+    (folder / "case.toml").write_text(with_value(table, key, [[1100.0, 2100.0]] * 5000))
+
+    with pytest.raises(ServiceError, match=rf"{key} is .*; \d to 4096 points "):
+        load_case(folder)
