@@ -1,8 +1,7 @@
 """The water at an edge, from the water inside and what is known outside.
 
 Seen along the outward normal, the cell at the edge has depth h, velocity u and celerity c = sqrt(g h). What
-leaves the grid carries the Riemann invariant u + 2 c outwards [Toro2001], so that the state (h_b, u_b) at
-the edge obeys
+leaves the grid carries the Riemann invariant u + 2 c outwards, so that the state (h_b, u_b) at the edge obeys
 
     u_b + 2 c_b = u + 2 c                                                             (subcritical flow)
 
@@ -19,6 +18,8 @@ is never faster than waves, u_b >= -c_b. Differences are formed first, so that s
 the condition gives exactly itself.
 
 The tangential velocity leaves with the water; water that enters has none.
+
+Sources: [Toro2001], [Blayo2005], [Sanders2002].
 """
 
 import warp as wp
