@@ -110,6 +110,8 @@ KEYS: dict[str, frozenset[str]] = {
             "riemann",
             "depth_dry",
             "depth_film",
+            "depth_cfl",
+            "eddy_viscosity",
             "depth_arrival",
             "arrival_depths",
         }

@@ -64,6 +64,10 @@ def read_params(
         depth_arrival=run.real(
             "depth_arrival", "a depth in m above 0", 0.0, 10.0, default=default.depth_arrival, above=True
         ),
+        depth_cfl=run.real("depth_cfl", "a depth in m from 0 to 0.05", 0.0, 0.05, default=default.depth_cfl),
+        eddy_viscosity=run.real(
+            "eddy_viscosity", "a number from 0 to 100", 0.0, 100.0, default=default.eddy_viscosity
+        ),
         gauges=gauges,
         sections=sections,
         gauge_interval=run.real(
