@@ -27,11 +27,11 @@ across.
 import warp as wp
 
 from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_TIME
-from solver_service.numerics.conservative_update import arrival_time, update_cell, widen_maxima
+from solver_service.numerics.conservative_update import arrival_time, film_speed, update_cell, widen_maxima
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.reconstruction import prediction
-from solver_service.numerics.riemann import FACE_TOLERANCE
+from solver_service.numerics.riemann import FACE_TOLERANCE, LAST_PLACE
 from solver_service.numerics.step_kernels import flux_x, flux_y, predict_at
 from solver_service.numerics.warp_modules import STRUCTURE_MODULE
 
@@ -158,7 +158,8 @@ def weir_flux(
     anchor = 2.0 * wp.max(l[5], r[5])
     donor = wp.where(mass < 0.0, r[5], l[5])
     moved = wp.abs(mass)
-    moved = wp.where(donor > 0.01 * anchor, (moved + anchor) - anchor, moved)
+    moved = wp.where(donor > 0.01 * anchor, moved, wp.max(moved - LAST_PLACE * anchor, 0.0))
+    moved = (moved + anchor) - anchor
     mass = wp.where(mass < 0.0, -moved, moved)
 
     q = mass / dt_dx
@@ -295,7 +296,7 @@ def step_beside_weirs(
         f.h[i, j], f.u[i, j], f.v[i, j], p[0], e_x, e_y,
         e[0], e[1], e[3], w[0], w[2], w[3],
         n[0], n[1], n[3], b[0], b[2], b[3],
-        f.drag[i, j], dt, s.dx, s.depth_dry,
+        f.drag[i, j], dt, s.dx, s.depth_dry, s.depth_cfl, film_speed(s.courant, s.depth_cfl, dt),
     )  # fmt: skip
     m = widen_maxima(
         q[0], q[1], q[2], q[3], f.h[i, j], dt, time, s.depth_arrival,
