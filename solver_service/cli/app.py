@@ -161,6 +161,31 @@ def store_backup(
     backup_store(destination, data_dir)
 
 
+@store.command("log")
+def store_log(
+    run_id: Annotated[str, typer.Argument(metavar="RUN", help="Id of a stored run.")],
+    out: Annotated[Path | None, typer.Option("--out", help="File; standard output by default.")] = None,
+    data_dir: DataDirOption = None,
+) -> None:
+    """Write the event log of a run: lineage, edits, moves and checksums as JSON lines."""
+    from solver_service.cli.event_log import write_log
+
+    write_log(run_id, out, data_dir)
+
+
+@app.command()
+def replay(
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="Event log of a run.")],
+    case: Annotated[str | None, typer.Option("--case", help="Name or path of its case.")] = None,
+    threads: ThreadsOption = None,
+) -> None:
+    """Compute the frames of an event log again and compare their bytes; exit code 1 where they differ."""
+    from solver_service.cli.event_log import replay_log
+
+    if not replay_log(log, case, threads):
+        raise typer.Exit(1)
+
+
 @app.command()
 def warmup(device: DeviceOption = "auto") -> None:
     """Compile the kernels for a device, so that the first run starts at once."""

@@ -19,7 +19,7 @@ from solver_service.store import (
 
 SHAPE = (40, 50)
 LAYOUT = BlockLayout(*SHAPE)
-RUN = RunRecord("r1", "case", "f00d", "Title", None, 0, "finished", "", 1e3, 5.0, "auto", 0, b"[]", b"{}")
+RUN = RunRecord("r1", "case", "f00d", "Title", None, 0, "finished", "", 1e3, 5.0, "auto", 0, b"\x90", b"{}")
 
 
 class SmallStore:
