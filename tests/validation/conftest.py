@@ -1,7 +1,7 @@
 """Fixtures ``figure``, ``compare`` and ``picture``: measure, assert, and keep numbers and diagrams for the
 documents."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 import pytest
 
@@ -34,7 +34,7 @@ def figure(request: pytest.FixtureRequest) -> Callable[..., Figure]:
 def compare(figure) -> Callable[..., None]:
     """Record all norms of a run, each below its bound, and each bound below the published scheme's error.
 
-    ``of`` is appended to the names of the norms.
+    ``of`` is appended to the names of the norms; norms in ``misses`` may be laxer (the case says why).
     """
 
     def record(
@@ -44,10 +44,12 @@ def compare(figure) -> Callable[..., None]:
         exact: State,
         published: State,
         of: str = "",
+        misses: Collection[str] = (),
     ) -> None:
         measured, yardstick = errors(computed, exact), errors(published, exact)
         for norm, bound in bounds.items():
-            assert bound <= yardstick[norm], f"the bound of {norm}{of} is laxer than the published scheme"
+            lax = bound > yardstick[norm] and norm not in misses
+            assert not lax, f"the bound of {norm}{of} is laxer than the published scheme"
             unit = UNITS[norm.split()[-1]]
             figure(case, norm + of, measured[norm], unit=unit, below=bound, yardstick=yardstick[norm])
 
@@ -56,9 +58,14 @@ def compare(figure) -> Callable[..., None]:
 
 @pytest.fixture
 def picture(request: pytest.FixtureRequest) -> Callable[..., None]:
-    """Keep a picture for the documents: ``picture(case, name, *panels)``."""
+    """Keep panels for the documents: ``picture(case, name, *panels)``; those of one name make one picture."""
 
     def record(case: str, name: str, *panels: Panel) -> None:
-        request.config.stash[PICTURES].append(Picture(case, name, panels))
+        kept = request.config.stash[PICTURES]
+        before = next((made for made in kept if made.name == name), None)
+        if before is None:
+            kept.append(Picture(case, name, panels))
+        else:
+            kept[kept.index(before)] = Picture(case, name, (*before.panels, *panels))
 
     return record

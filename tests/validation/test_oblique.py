@@ -1,13 +1,17 @@
 """Dam breaks at 30 and 45 degrees to the grid, and Thacker's basin with the water on a slanting side.
 
 Sources: as for the cases along the grid (``test_ritter.py``, ``test_stoker.py``, ``test_dressler.py``,
-``test_thacker.py``). A scheme that splits the directions, or whose limiter favours the axes, is worse off the
-axes; here oblique water must be computed as well as water along the axes.
+``test_thacker.py``). A scheme that splits the directions, or whose limiter favours the whose limiter favours the axes, is worse off the
+axes; here oblique water must be computed as well as water along the axes. The exact solutions know no
+turbulence, so that the eddy viscosity is off, but for one figure: it mixes what the grid sees as shear, in a
+stream at an angle also what is none.
+ here oblique water must be computed as well as water along the axes.
 """
 
 import numpy as np
 import pytest
 
+from solver_service.numerics import SolverParams
 from tests.validation.published_scheme import simulate
 from tests.validation.runs import Grid, l1, make_solver, solve, square
 from tests.validation.solutions import Dressler, Ritter, Stoker, ThackerPlanar
@@ -22,7 +26,7 @@ KINDS = {
     "wet bed": lambda angle: Stoker(10.0, 1.0, angle=angle),
     "dry rough bed": lambda angle: Dressler(10.0, 0.02, angle=angle),
 }
-BOUNDS = {"dry bed": 0.048, "wet bed": 0.041, "dry rough bed": 0.0525}
+BOUNDS = {"dry bed": 0.048, "wet bed": 0.041, "dry rough bed": 0.046}
 
 
 def averages(dam, time):
@@ -41,8 +45,9 @@ def error(dam, run):
     return l1(h[clear], averages(dam, TIME)[0][clear])
 
 
-def ours(start, manning_n, order=2):
-    solver = make_solver(np.zeros((CELLS, CELLS)), SIZE / CELLS, manning_n, order=order)
+def ours(start, manning_n, **params):
+    numbers = {"eddy_viscosity": 0.0} | params
+    solver = make_solver(np.zeros((CELLS, CELLS)), SIZE / CELLS, manning_n, **numbers)
     solver.set_water(*(q.astype(np.float32) for q in start))
     solver.advance_to(TIME)
     return solver.depth()
@@ -65,6 +70,16 @@ def test_dam_break_across_the_grid_is_as_good_as_along_it(kind, angle, aligned, 
     assert yardstick >= BOUNDS[kind]
     figure(DAMS, f"L1 of h, {kind}, {angle}", found, unit="m", below=BOUNDS[kind], yardstick=yardstick)
     figure(DAMS, f"the same against the aligned run, {kind}, {angle}", found / aligned[kind], below=1.25)
+
+
+def test_eddy_viscosity_costs_less_than_the_published_scheme_loses(figure):
+    def mixed(start, manning_n):
+        return ours(start, manning_n, eddy_viscosity=SolverParams().eddy_viscosity)
+
+    dam = KINDS["dry rough bed"](np.pi / 4.0)
+    found, yardstick = error(dam, mixed), error(dam, published)
+    name = "L1 of h, dry rough bed, 45 degrees, with eddy viscosity"
+    figure(DAMS, name, found, unit="m", below=0.0525, yardstick=yardstick)
 
 
 def test_first_order_run_fails_the_bounds():
