@@ -24,6 +24,10 @@ ROWS = (
 )
 
 
+SHOWN = 1e-3
+"""Smaller volumes [m3] wait in a structure for the next quantum of water."""
+
+
 def run_offline(name: str, options: OfflineOptions, cell_size: float | None, json_line: bool) -> None:
     """Run a case and tell its figures.
 
@@ -79,15 +83,18 @@ def _tell(summary: dict[str, Any]) -> None:
     for warning in summary["warnings"]:
         print(f"  warning: {warning}")
     if summary["licence"]:
-        print(f"  {'data':<24}{summary['source']}; licence: {summary['licence']}")
+        print(f"  {'data':<24}{summary['source'] or 'source not said'}; licence: {summary['licence']}")
 
 
 def _budget(budget: dict[str, Any]) -> list[tuple[str, float]]:
-    """The volumes of the water budget that are not nothing, with their names."""
+    """The volumes of the water budget that are worth showing, with their names."""
     rows = [("water at the start", budget["initial"]), ("rain", budget["rain"])]
     rows += [(f"source {name}", volume) for name, volume in budget["sources"].items()]
     for name, volumes in budget["edges"].items():
         rows += [(f"in through {name}", volumes["in"]), (f"out through {name}", -volumes["out"])]
     rows += [(f"structure {name}", -volume) for name, volume in budget["structures"].items()]
     rows += [("into the ground", -budget["infiltration"]), ("cut by edits", -budget["edits"])]
-    return [*((name, volume) for name, volume in rows if volume), ("water at the end", budget["stored"])]
+    return [
+        *((name, volume) for name, volume in rows if abs(volume) >= SHOWN),
+        ("water at the end", budget["stored"]),
+    ]
