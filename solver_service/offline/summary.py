@@ -15,6 +15,9 @@ from solver_service.scenario import Case
 ERROR_ODD = 1e-5
 """A larger closing error in units of all the water [1] is told."""
 
+UNMET_ODD = 1e-2
+"""A larger part of the outflow asked for at an edge that was not there [1] is told."""
+
 
 class SmallestStep:
     """Which output interval had the smallest mean step, and which cell limits it at its end.
@@ -104,6 +107,11 @@ def _odd_ends(solver: ShallowWaterSolver, budget: VolumeBudget) -> list[str]:
         f"The breach '{state.id}' never started."
         for state in solver.breach_states()
         if state.started_at is None
+    ]
+    told += [
+        f"The discharge '{name}' was to take out {volume:.6g} m3 more than there was at the edge."
+        for name, volume in solver.unmet_outflow().items()
+        if volume > UNMET_ODD * (volume + budget.edges[name][1])
     ]
     if abs(budget.error_relative) > ERROR_ODD:
         told.append(

@@ -277,6 +277,21 @@ def test_a_hydrograph_brings_its_volume_without_drift():
     assert s.budget().edges["out"][1] > 1e4
 
 
+@pytest.mark.parametrize(
+    ("times", "values"),
+    [([-20.0, 30.0], [1.0, 6.0]), ([20.0, 40.0], [3.0, 5.0]), ([0.0], [4.0]), ([-9.0, -3.0], [5.0, 2.0])],
+)
+def test_a_series_holds_before_its_first_and_after_its_last_time(times, values):
+    boundaries = (edge("west", "discharge", 0, 2, id="in", times=times, values=values),)
+    s = channel(100.0, 5.0, boundaries, manning_n=0.03)
+    s.set_water(np.full((2, 20), 1.5))
+    for time in (10.0, 60.0):
+        s.advance_to(time)
+        t = np.linspace(0.0, time, 60001)
+        came, left = s.budget().edges["in"]
+        assert came - left == pytest.approx(np.trapezoid(np.interp(t, times, values), t), rel=4e-3)
+
+
 def test_the_first_water_takes_the_lowest_cells_and_no_giant_step():
     s = valley([0.0, 0.0, 60.0], [0.0, 100.0, 100.001])
     s.advance_to(100.0)

@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 import pytest
@@ -78,3 +79,17 @@ width_final = 40.0
     (told,) = summary["breaches"]
     assert (told["breach"], told["started_at_s"], told["width_m"]) == ("breach-1", None, 0.0)
     assert told["level_m"] == pytest.approx(320.0)
+
+
+def test_outflow_that_the_water_at_an_edge_did_not_allow_is_told(tmp_path: Path) -> None:
+    case = load_case(write_case(tmp_path, CASE.replace('"open"', '"discharge"\ndischarge = -5.0')))
+
+    summary = run_case(case, OfflineOptions(device="cpu", until=4.0))
+
+    (warning,) = summary["warnings"]
+    told = re.fullmatch(
+        "The discharge 'east-1' was to take out (.+) m3 more than there was at the edge.", warning
+    )
+    assert told is not None
+    assert 15.0 < float(told[1]) <= 20.0  # all but what the last step still owes
+    assert summary["water_budget_m3"]["edges"]["east-1"] == {"in": 0.0, "out": 0.0}
