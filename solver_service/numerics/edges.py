@@ -268,6 +268,8 @@ class Edges:
         """See `StepPart`; the water that stands at the edges now is what open edges lead to."""
         for name in ("unmet", "came", "flow_seen", "chunk_flow", "due"):
             self._arrays[name].zero_()
+        if not any(b.kind == "open" for b in self._boundaries):
+            return
         h, u, v = (self._store.interior(name) for name in ("h", "u", "v"))
         rest_h, rest_u = np.zeros(self.segment.shape, np.float32), np.zeros(self.segment.shape, np.float32)
         for number, (edge, outward) in enumerate(zip(EDGES, (-u, u, -v, v), strict=True)):

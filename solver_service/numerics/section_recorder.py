@@ -9,7 +9,7 @@ import numpy.typing as npt
 import warp as wp
 
 from solver_service.numerics.device import load_structure_kernels
-from solver_service.numerics.fields import Fields, FieldStore, Scheme
+from solver_service.numerics.fields import Fields, FieldStore, FloatRaster, Scheme
 from solver_service.numerics.gauges import ANY_NUMBER, DRAIN_STEPS
 from solver_service.numerics.params import SolverParams
 from solver_service.numerics.section import SectionProfile, SectionSeries, SectionTotals
@@ -96,8 +96,9 @@ class SectionRecorder:
         if not self.count:
             return
         now = []
+        rasters = self._rasters()
         for section in range(self.count):
-            profile = self.profile(section)
+            profile = self._profile(section, rasters)
             share = self._chains[section].share
             now.append(
                 [
@@ -162,17 +163,22 @@ class SectionRecorder:
 
     def profile(self, number: int) -> SectionProfile:
         """The water along the section of a number now."""
+        return self._profile(number, self._rasters())
+
+    def _rasters(self) -> list[FloatRaster]:
+        return [self._store.interior(name) for name in ("h", "u", "v", "z")]
+
+    def _profile(self, number: int, rasters: list[FloatRaster]) -> SectionProfile:
         chain, line = self._chains[number], self._sections[number].line
         row, col, side = chain.faces.T
         north = side == NORTH_FACE
         cells, beyond = (row, col), (row + north, col + ~north)
         place = nearest_on_line(col + 0.5 * ~north, row + 0.5 * north, line)
-        h, u, v, z = (self._store.interior(name).astype(np.float64) for name in ("h", "u", "v", "z"))
-        depth = 0.5 * (h[cells] + h[beyond])
-        flow = np.where(north, v[cells] * h[cells], u[cells] * h[cells])
-        flow = 0.5 * (flow + np.where(north, v[beyond] * h[beyond], u[beyond] * h[beyond]))
-        speed = np.divide(chain.sign * flow, depth, out=np.zeros_like(depth), where=depth > 0.0)
-        return SectionProfile(place.along * self._dx, np.maximum(z[cells], z[beyond]), depth, speed)
+        near, far = ([raster[at].astype(np.float64) for raster in rasters] for at in (cells, beyond))
+        depth = 0.5 * (near[0] + far[0])
+        flow = np.where(north, near[2] * near[0] + far[2] * far[0], near[1] * near[0] + far[1] * far[0])
+        speed = np.divide(0.5 * chain.sign * flow, depth, out=np.zeros_like(depth), where=depth > 0.0)
+        return SectionProfile(place.along * self._dx, np.maximum(near[3], far[3]), depth, speed)
 
     # --- state ---------------------------------------------------------------------------------------
 
