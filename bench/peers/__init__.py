@@ -2,7 +2,7 @@
 
 Every solver, this one too, runs the case of `case.py` in a process of its own (`run_NAME.py`) on one
 thread. A peer gets a virtual environment of its own from the package index; one that cannot be installed
-is skipped with the reason. The errors are against two fine runs, one of this solver and one of ANUGA, so
+is skipped with the reason. The errors are against fine runs of this solver, ANUGA and PyClaw, so
 that none is judged by itself alone. `python -m bench.peers.table` writes the kept figures into
 `docs/explanation/peers.md`.
 """
@@ -17,7 +17,7 @@ from bench.peers.environments import PEERS, PeerMissing, python_of
 from bench.peers.measures import Outcome, coarsen, errors, run
 
 CELLS, CELLS_SMOKE = 512, 64
-FINE = {"FEV": 4, "ANUGA DE1": 2}
+FINE = {"FEV": 4, "ANUGA DE1": 2, "PyClaw": 2}
 """Reference runs: how many times finer."""
 
 
