@@ -268,6 +268,8 @@ def run_conduits(
             area_in = wp.float64(out0 - in0) * cell_area
             area_out = wp.float64(end - out0) * cell_area
             level = wp.max(up - wp.max(down, intake), ZERO)
+            if level < QUANTUM:  # quanta cannot even it out: rounding would set a lake at rest in motion
+                level = ZERO
             most = HALF * level * (area_in * area_out / (area_in + area_out))
         else:
             if eta_in >= numbers[k, START_LEVEL]:

@@ -1,11 +1,10 @@
 """Dam breaks at 30 and 45 degrees to the grid, and Thacker's basin with the water on a slanting side.
 
 Sources: as for the cases along the grid (``test_ritter.py``, ``test_stoker.py``, ``test_dressler.py``,
-``test_thacker.py``). A scheme that splits the directions, or whose limiter favours the whose limiter favours the axes, is worse off the
+``test_thacker.py``). A scheme that splits the directions, or whose limiter favours the axes, is worse off the
 axes; here oblique water must be computed as well as water along the axes. The exact solutions know no
 turbulence, so that the eddy viscosity is off, but for one figure: it mixes what the grid sees as shear, in a
 stream at an angle also what is none.
- here oblique water must be computed as well as water along the axes.
 """
 
 import numpy as np

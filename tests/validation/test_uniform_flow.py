@@ -1,8 +1,7 @@
-"""Uniform flow in a wide sloping channel against Manning's formula, fed by a source and drained by an open
-edge.
+"""Uniform flow in a wide sloping channel against Manning's formula, driven by a source or through the edges.
 
 Source: Chow (1959), "Open-Channel Hydraulics", chapter 6. Discharge q per width runs with the normal depth
-h = (n q / sqrt(S))^(3/5): friction, slope, source and edge must agree on it, without a word to the solver
+h = (n q / sqrt(S))^(3/5): friction, slope, source and edges must agree on it, without a word to the solver
 about depth.
 """
 
@@ -58,6 +57,41 @@ def test_channel_runs_with_the_normal_depth(slope, until, slack, figure, request
     figure(CASE, f"error of the normal depth, {kind}", off, below=1e-4, instead="round-off")
     figure(CASE, f"outflow per inflow, {kind}", passed, above=1.0 - slack, below=1.0 + slack)
     np.testing.assert_allclose(discharge[:, middle], DISCHARGE, rtol=1e-3)
+
+
+EDGES = {
+    "normal depth": {"kind": "normal_depth"},
+    "stage": {"kind": "stage", "times": [0.0]},
+    "open, fast": {"kind": "open"},
+}
+
+
+@pytest.mark.parametrize(
+    ("outlet", "slope"),
+    [("normal depth", 0.002), ("normal depth", 0.02), ("stage", 0.002), ("open, fast", 0.02)],
+)
+def test_discharge_through_an_edge_runs_with_the_normal_depth_from_end_to_end(outlet, slope, figure):
+    """Dry at first; at the end no cell may be off, but where fast flow has entered at its critical depth."""
+    h_n, what = normal_depth(slope), dict(EDGES[outlet])
+    bed = np.broadcast_to(slope * DX * np.arange(COLS)[::-1], (ROWS, COLS)).astype(np.float32)
+    if outlet == "normal depth":
+        what["slope"] = slope
+    elif outlet == "stage":
+        what["values"] = [h_n - 0.5 * slope * DX]
+    series = {"times": [0.0, 60.0], "values": [0.0, DISCHARGE * DX * ROWS]}
+    edges = (
+        EdgeBoundary("west", "discharge", 0, ROWS, **series),
+        EdgeBoundary("east", first=0, last=ROWS, **what),
+    )
+    model = FloodModel(dx=DX, z_b=bed, manning_n=MANNING_N, boundaries=edges)
+    solver = ShallowWaterSolver(model, SolverParams(), device="cpu")
+    solver.set_water(np.zeros((ROWS, COLS), np.float32))
+    solver.advance_to(6000.0)
+    entry = 5 if 9.81 * h_n**3 < DISCHARGE**2 else 0
+    off = np.abs(solver.depth()[:, entry:] / h_n - 1.0)
+    name = f"discharge in, {outlet} out, slope {slope}"
+    figure(CASE, f"largest error of the normal depth, {name}", off.max(), below=1e-4)
+    assert abs(solver.budget().error_relative) < 2e-8
 
 
 def test_roughness_wrong_by_a_thousandth_would_be_seen():
