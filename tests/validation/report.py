@@ -2,8 +2,8 @@
 
 The table in ``docs/validation.md`` stands between two marks; the text around it is kept. Round-off figures
 show only their bound, so that the file is the same on every machine. Cases whose data are not there
-(``FEV_DATA_HOME``) are skipped; then sections that were not measured are kept as they were. Pictures go to
-``docs/images/validation``.
+(``FEV_DATA_HOME``) are skipped; then, and where test files are named as arguments, sections that were not
+measured are kept as they were. Pictures go to ``docs/images/validation``.
 """
 
 import sys
@@ -84,16 +84,18 @@ def show(pictures: list[Picture]) -> dict[str, list[str]]:
 
 
 def main(arguments: list[str]) -> int:
-    """Run the folder and rewrite the page; a failing test leaves the page as it was."""
+    """Run the folder, or the files named, and rewrite the page; a failing test leaves it as it was."""
     collector = Collector()
-    status = pytest.main([str(Path(__file__).parent), "-q", *arguments], plugins=[collector])
+    is_part = any(not word.startswith("-") for word in arguments)
+    what = arguments if is_part else [str(Path(__file__).parent), *arguments]
+    status = pytest.main(["-q", *what], plugins=[collector])
     if status != pytest.ExitCode.OK:
         return int(status)
     page = PAGE.read_text(encoding="utf-8")
     before, rest = page.split(BEGIN)
     old, after = rest.split(END)
     found = sections(collector.figures, show(collector.pictures))
-    kept = parse(old) if collector.skipped else {}
+    kept = parse(old) if collector.skipped or is_part else {}
     body = "\n\n".join(f"### {case}\n\n{text}" for case, text in sorted((kept | found).items()))
     PAGE.write_text(f"{before}{BEGIN}\n\n{body}\n\n{END}{after}", encoding="utf-8")
     for path in IMAGES.iterdir():
