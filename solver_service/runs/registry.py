@@ -114,8 +114,8 @@ class RunRegistry:
 
     async def open(self) -> None:
         """Take over the store: fence off earlier services, mend what a crash left, warm a worker."""
-        self._folder.remove_unfinished()
         epoch = await self._store.call(RunDatabase.begin_epoch)
+        self._folder.remove_unfinished()
         active = tuple(status.value for status in ACTIVE)
         await self._store.call(RunDatabase.interrupt_active, active, RunStatus.PAUSED.value, INTERRUPTED)
         for record in await self._store.call(RunDatabase.runs):

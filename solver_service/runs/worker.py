@@ -46,6 +46,7 @@ class Worker:
         case: case and device it has loaded, None for none.
         holds: runs of which something may still be on its way from this worker to the disk, with the number
             of the last Begin of each.
+        is_ending: whether it was told to end, or will be; such a worker takes no run.
     """
 
     def __init__(
@@ -62,6 +63,7 @@ class Worker:
         self.devices: tuple[str, ...] = ()
         self.case: tuple[str, str] | None = None
         self.holds: dict[str, int] = {}
+        self.is_ending = False
         self.pid: int | None = None
         self._last_words: Failed | None = None
         self._on_report = on_report
@@ -137,6 +139,7 @@ class Worker:
 
     async def quit(self) -> None:
         """End it: politely, then not; one that is still starting has nothing to lose."""
+        self.is_ending = True
         if not self._ready.is_set():
             self.kill()
         self.send(Quit())

@@ -81,7 +81,7 @@ class WorkerPool:
     def release(self, worker: Worker) -> None:
         """Take a worker back; one spare too many is ended."""
         worker.run = None
-        spares = [w for w in self._workers if w.run is None]
+        spares = self._spares()
         if len(spares) > self._spare_count:
             self._end(next((w for w in spares if not w.is_ready), worker))
 
@@ -93,9 +93,13 @@ class WorkerPool:
         await asyncio.gather(*(worker.quit() for worker in self._workers))
 
     def _spare(self, case: str, device: str) -> Worker | None:
-        spares = [worker for worker in self._workers if worker.run is None and not worker.is_dead]
+        spares = self._spares()
         spares.sort(key=lambda worker: (worker.case != (case, device), not worker.is_ready))
         return spares[0] if spares else None
+
+    def _spares(self) -> list[Worker]:
+        """Workers without a run that live on: one that was told to end must not be given another."""
+        return [w for w in self._workers if w.run is None and not (w.is_ending or w.is_dead)]
 
     def _left_over(self) -> Worker | None:
         """With many workers alive, one whose run does not need it; its state is on disk."""
@@ -106,7 +110,7 @@ class WorkerPool:
     async def _fill(self, delay_s: float) -> None:
         await asyncio.sleep(delay_s)
         while not self._closing and len(self._workers) < MAX_WORKERS:
-            if sum(worker.run is None for worker in self._workers) >= self._spare_count:
+            if len(self._spares()) >= self._spare_count:
                 return
             await self._start()
 
@@ -117,6 +121,7 @@ class WorkerPool:
         return worker
 
     def _end(self, worker: Worker) -> None:
+        worker.is_ending = True
         task = asyncio.get_running_loop().create_task(worker.quit())
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)

@@ -141,7 +141,7 @@ def remove_orphans(folder: DataFolder, database: RunDatabase, run: str) -> int:
     known = {record.name for record in database.checkpoints(run)}
     orphans = [path for path in folder.checkpoints(run).glob("*") if path.name not in known]
     for path in orphans:
-        shutil.rmtree(path)
+        shutil.rmtree(path, ignore_errors=True)
     return len(orphans)
 
 

@@ -96,11 +96,14 @@ class DataFolder:
             self._lock = None
 
     def remove_unfinished(self) -> None:
-        """Delete what a crash left half-written: temporary folders and files, never anything with a row."""
+        """Delete what a crash left half-written: temporary folders and files, never anything with a row.
+
+        A worker of the service before may be ending just now and delete the same.
+        """
         for folder in (self.root / "checkpoints").glob("*/*.writing"):
-            shutil.rmtree(folder)
+            shutil.rmtree(folder, ignore_errors=True)
         for file in (self.root / "terrain").glob("*.writing"):
-            file.unlink()
+            file.unlink(missing_ok=True)
 
     def __enter__(self) -> DataFolder:
         """Lock on entry."""

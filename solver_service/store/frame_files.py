@@ -137,7 +137,7 @@ def recover_segments(folder: DataFolder, database: RunDatabase, run: str) -> int
         end = ends.get(path.name, 0)
         size = path.stat().st_size
         if end == 0:
-            path.unlink()
+            path.unlink(missing_ok=True)
         elif size > end:
             os.truncate(path, end)
         cut += max(size - end, 0)

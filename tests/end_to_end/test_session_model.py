@@ -1,0 +1,196 @@
+"""Commands in any order against the real service: what the one table of moves says is what happens."""
+
+from pathlib import Path
+from typing import Any
+
+import hypothesis.strategies as st
+import pytest
+from hypothesis import HealthCheck, settings
+from hypothesis.stateful import (
+    RuleBasedStateMachine,
+    invariant,
+    precondition,
+    rule,
+    run_state_machine_as_test,
+)
+
+import protocol
+from bench.service_process import ServiceClient, ServiceProcess
+from solver_service.runs.run_status import RULES, Move, RunStatus
+from tests.end_to_end.dam_break import levee
+
+MOVES = {
+    protocol.PauseRun: Move.PAUSE,
+    protocol.ResumeRun: Move.RESUME,
+    protocol.StopRun: Move.STOP,
+    protocol.DeleteRun: Move.DELETE,
+    protocol.PinRun: Move.PIN,
+    protocol.UnpinRun: Move.UNPIN,
+}
+PICK = st.integers(0, 1000)
+
+
+class Session(RuleBasedStateMachine):
+    """The runs that one client made, as it must believe them to be."""
+
+    client: ServiceClient
+    case: str
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.runs: list[str] = []
+        self.edits: dict[str, list[str]] = {}
+        self.undone: dict[str, list[str]] = {}
+        self.revision: dict[str, int] = {}
+        self.pinned: set[str] = set()
+        self.parent: dict[str, str] = {}
+        self.numbers = 0
+
+    def infos(self) -> dict[str, protocol.RunInfo]:
+        return {info.run: info for info in self.client.ask(protocol.ListRuns).runs}
+
+    def pick(self, number: int) -> str:
+        return self.runs[number % len(self.runs)]
+
+    def know(self, run: str, like: str | None = None) -> None:
+        self.runs.append(run)
+        self.edits[run] = list(self.edits.get(like or "", []))
+        self.undone[run] = list(self.undone.get(like or "", []))
+        self.revision[run] = self.revision.get(like or "", 0)
+
+    @precondition(lambda self: len(self.runs) < 4)
+    @rule(paused=st.booleans())
+    def start(self, paused: bool) -> None:
+        self.know(
+            str(self.client.do(protocol.StartRun, case=self.case, duration=400.0, paused=paused)["run"])
+        )
+
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK, kind=st.sampled_from(sorted(MOVES, key=lambda kind: kind.__name__)))
+    def move(self, number: int, kind: type[protocol.Command]) -> None:
+        run = self.pick(number)
+        before = RunStatus(self.infos()[run].status)
+        answer = self.client.ask(kind, run=run)
+        after = self.infos().get(run)
+        move = MOVES[kind]
+        seen = {before} | ({RunStatus(after.status)} if after is not None else set())
+        needed = kind is protocol.DeleteRun and (run in self.pinned or run in self.parent.values())
+        if isinstance(answer, protocol.Ack):
+            # the worker may have moved the run on its own between the two looks
+            assert not needed
+            assert {before, *later(before)} & RULES[move].sources
+        else:
+            assert needed or (seen | later(before)) - RULES[move].sources, answer.message
+            assert "cannot be" in answer.message
+        if isinstance(answer, protocol.Ack) and kind is protocol.DeleteRun:
+            assert after is None
+            self.runs.remove(run)
+            self.parent.pop(run, None)
+        elif isinstance(answer, protocol.Ack) and kind is protocol.StopRun:
+            assert after is not None
+            assert after.status == "stopped"
+        elif kind is protocol.PinRun:
+            self.pinned.add(run)
+        elif kind is protocol.UnpinRun:
+            self.pinned.discard(run)
+
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK)
+    def append(self, number: int) -> None:
+        run = self.pick(number)
+        self.numbers += 1
+        name = f"e{self.numbers}"
+        revision = self.client.do(protocol.AppendEdit, run=run, edit=levee(name))["revision"]
+        self.edits[run].append(name)
+        self.undone[run] = []
+        self.changed(run, revision)
+
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK)
+    def undo(self, number: int) -> None:
+        run = self.pick(number)
+        answer = self.client.ask(protocol.UndoEdit, run=run)
+        if self.edits[run]:
+            self.undone[run].append(self.edits[run].pop())
+            self.changed(run, answer.result["revision"])
+        else:
+            assert "no edit to undo" in answer.message
+
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK)
+    def redo(self, number: int) -> None:
+        run = self.pick(number)
+        answer = self.client.ask(protocol.RedoEdit, run=run)
+        if self.undone[run]:
+            self.edits[run].append(self.undone[run].pop())
+            self.changed(run, answer.result["revision"])
+        else:
+            assert "no edit to redo" in answer.message
+
+    @precondition(lambda self: 0 < len(self.runs) < 4)
+    @rule(number=PICK, index=st.integers(0, 12), stale=st.booleans())
+    def recalculate(self, number: int, index: int, stale: bool) -> None:
+        run = self.pick(number)
+        count = self.infos()[run].frame_count
+        revision = self.revision[run] + stale
+        answer = self.client.ask(protocol.Recalculate, run=run, index=index, revision=revision)
+        if isinstance(answer, protocol.Ack):
+            assert not stale
+            child = str(answer.result["run"])
+            self.know(child, like=run)
+            info = self.infos()[child]
+            assert info.branch_index == index
+            assert info.parent is not None
+            self.parent[child] = info.parent
+        elif "is not computed yet" in answer.message:
+            assert index >= count
+        else:
+            assert stale, answer.message
+            assert "are at revision" in answer.message
+
+    def changed(self, run: str, revision: Any) -> None:
+        self.revision[run] += 1
+        assert revision == self.revision[run]
+
+    @invariant()
+    def the_service_says_what_the_model_says(self) -> None:
+        infos = self.infos()
+        for run in self.runs:
+            assert infos[run].revision == self.revision[run]
+            assert infos[run].pinned == (run in self.pinned)
+
+    def teardown(self) -> None:
+        for run in self.runs:
+            self.client.do(protocol.Subscribe, run=run)
+            told = self.client.first(protocol.EditsChanged, lambda event, run=run: event.run == run)
+            if told.revision == self.revision[run]:
+                assert [edit.id for edit in told.edits] == self.edits[run]
+        for run in reversed(self.runs):
+            self.client.ask(protocol.StopRun, run=run)
+
+
+def later(status: RunStatus) -> set[RunStatus]:
+    """What a run may become by itself."""
+    if status is RunStatus.STARTING:
+        return {RunStatus.RUNNING, RunStatus.PAUSED, RunStatus.FINISHED}
+    return {RunStatus.PAUSED, RunStatus.FINISHED} if status is RunStatus.RUNNING else {RunStatus.FINISHED}
+
+
+@pytest.mark.slow
+def test_any_order_of_commands_does_what_the_table_of_moves_says(tmp_path: Path, case: str) -> None:
+    with ServiceProcess(tmp_path, cases=[case], threads=2) as service, ServiceClient(service) as client:
+
+        class Model(Session):
+            pass
+
+        Model.client, Model.case = client, case
+        run_state_machine_as_test(
+            Model,
+            settings=settings(
+                max_examples=6,
+                stateful_step_count=15,
+                deadline=None,
+                suppress_health_check=list(HealthCheck),
+                database=None,
+            ),
+        )
