@@ -17,7 +17,7 @@ CLOCK_TIME = wp.constant(0)
 CLOCK_TARGET = wp.constant(1)
 CLOCK_DT = wp.constant(2)
 CLOCK_BEFORE = wp.constant(3)
-CLOCK_WAVE = wp.constant(4)
+CLOCK_STABLE = wp.constant(4)
 CLOCK_LENGTH = 5
 
 COUNT_STEPS = wp.constant(0)
@@ -70,7 +70,7 @@ def begin_step(
         stable = dt_max
         if wave > 0.0:
             stable = wp.min(courant / wp.float64(wave), dt_max)
-        clock[CLOCK_WAVE] = wp.float64(wave)
+        clock[CLOCK_STABLE] = stable
         if stable < dt_min:
             counts[COUNT_FAILED] = 1
         else:

@@ -26,12 +26,12 @@ maxima = wp.types.vector(length=9, dtype=wp.float32)
 
 
 @wp.func
-def film_speed(courant: float, depth_cfl: float, dt: float) -> float:
-    """Speed along x or y [m/s] with which water as deep as `depth_cfl` asks for no step shorter than dt.
+def film_speed(courant: float, depth_cfl: float, stable: float) -> float:
+    """Speed along x or y [m/s] with which water as deep as `depth_cfl` asks for no step shorter than it is.
 
-    `courant` is cfl dx [m].
+    `courant` is cfl dx [m]; `stable` is the step that stability allows [s], not the one cut short to land.
     """
-    return wp.max(courant / dt - wp.sqrt(GRAVITY * depth_cfl), 0.0)
+    return wp.max(courant / stable - wp.sqrt(GRAVITY * depth_cfl), 0.0)
 
 
 @wp.func

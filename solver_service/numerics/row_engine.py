@@ -22,6 +22,7 @@ from solver_service.numerics.clock_kernels import (
     CLOCK_BEFORE,
     CLOCK_DT,
     CLOCK_LENGTH,
+    CLOCK_STABLE,
     CLOCK_TIME,
     choose_dt,
 )
@@ -34,8 +35,8 @@ LOG = logging.getLogger(__name__)
 
 SCRATCH_PITCH = CHUNK_COLS + 16
 
-DT_PARAMETER, TIME_PARAMETER = 7, 8
-"""Places of `dt` and `time` among the arguments of `step_chunks`."""
+DT_PARAMETER, STABLE_PARAMETER, TIME_PARAMETER = 7, 8, 9
+"""Places of `dt`, `stable` and `time` among the arguments of `step_chunks`."""
 
 
 @functools.cache
@@ -113,7 +114,8 @@ class RowEngine(Engine):
             raise StepCollapse
         parity = store.parity
         clock = self._clock_view
-        clock[[int(CLOCK_BEFORE), int(CLOCK_TIME), int(CLOCK_DT)]] = self.time, after, dt
+        places = [int(CLOCK_BEFORE), int(CLOCK_TIME), int(CLOCK_DT), int(CLOCK_STABLE)]
+        clock[places] = self.time, after, dt, stable
         self._edge_wave_view[0] = 0.0
         if self._ghost_count:
             for launch in self._ghost_launches[parity]:
@@ -122,6 +124,7 @@ class RowEngine(Engine):
         self._taken_view[:] = self._share_view[:-1]
         for sweep in sweeps:
             sweep.set_param_at_index(DT_PARAMETER, dt)
+            sweep.set_param_at_index(STABLE_PARAMETER, stable)
             sweep.set_param_at_index(TIME_PARAMETER, after)
         futures = [self._pool.submit(sweep.launch) for sweep in sweeps[1:]] if self._pool else []
         if sweeps:
@@ -175,6 +178,7 @@ class RowEngine(Engine):
                 self._scratch,
                 thread * self._scratch_size,
                 SCRATCH_PITCH,
+                0.0,
                 0.0,
                 0.0,
                 self._shares,

@@ -47,7 +47,7 @@ _SWEEP = r"""
     const float half_dt = 0.5f * dt;
     const float dx = s.dx, theta = s.theta, hancock = s.hancock, contact = s.contact, eddy = s.eddy;
     const float depth_dry = s.depth_dry, depth_film = s.depth_film, depth_arrival = s.depth_arrival;
-    const float depth_cfl = s.depth_cfl, film_speed = FILM_SPEED(s.courant, depth_cfl, dt);
+    const float depth_cfl = s.depth_cfl, film_speed = FILM_SPEED(s.courant, depth_cfl, stable);
     const float r = dt / dx;
     double* edge = (double*)f.edge_flow.data;
     const int edge_pitch = f.edge_flow.shape[1];
@@ -186,6 +186,7 @@ def sweep(
     scratch_offset: int,
     scratch_pitch: int,
     dt: float,
+    stable: float,
     time: float,
     chunk_waves: wp.array(dtype=wp.float32),
 ):
@@ -223,6 +224,7 @@ def step_chunks(
     scratch_offset: int,
     scratch_pitch: int,
     dt: float,
+    stable: float,
     time: float,
     shares: wp.array(dtype=wp.int32),
     # outputs
@@ -240,6 +242,7 @@ def step_chunks(
         scratch_offset: where this thread's begins.
         scratch_pitch: length of a scratch row.
         dt: time step [s].
+        stable: time step that stability alone allows [s].
         time: time after the step [s].
         shares: [threads + 1], first chunk of each thread's share.
         taken: [threads], next chunk of each share.
@@ -286,5 +289,17 @@ def step_chunks(
         chunk_waves[0] = a[0] + b[0] + c[0] + d[0] + arrival_time(dt, dt, dt, dt) + film_speed(dt, dt, dt)
     chunk = take_chunk(shares, taken, thread)
     while chunk >= 0:
-        sweep(f, s, chunk_array, chunk, scratch_array, scratch_offset, scratch_pitch, dt, time, chunk_waves)
+        sweep(
+            f,
+            s,
+            chunk_array,
+            chunk,
+            scratch_array,
+            scratch_offset,
+            scratch_pitch,
+            dt,
+            stable,
+            time,
+            chunk_waves,
+        )
         chunk = take_chunk(shares, taken, thread)

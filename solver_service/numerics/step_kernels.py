@@ -8,7 +8,7 @@ launch, hence the captured graph, does not depend on how many tiles are active.
 
 import warp as wp
 
-from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_TIME
+from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_STABLE, CLOCK_TIME
 from solver_service.numerics.conservative_update import arrival_time, film_speed, update_cell, widen_maxima
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.reconstruction import predict, prediction
@@ -75,7 +75,7 @@ def flux_y(l: prediction, r: prediction, z_step: float, dt_dx: float, contact: f
 
 
 @wp.func
-def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> float:
+def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, stable: float, time: float) -> float:
     """Advance padded cell (i, j); returns its wave speed [m/s]."""
     h = f.h[i, j]
     u = f.u[i, j]
@@ -92,7 +92,7 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, time: float) -> f
         h, u, v, c[0], c[3] + c[6], c[7] + c[10],
         e[0], e[1], e[3], w[0], w[2], w[3],
         n[0], n[1], n[3], b[0], b[2], b[3],
-        f.drag[i, j], dt, s.dx, s.depth_dry, s.depth_cfl, film_speed(s.courant, s.depth_cfl, dt),
+        f.drag[i, j], dt, s.dx, s.depth_dry, s.depth_cfl, film_speed(s.courant, s.depth_cfl, stable),
     )  # fmt: skip
     if j == 2:
         f.edge_flow[0, i - 2] = f.edge_flow[0, i - 2] - wp.float64(w[0])
@@ -148,6 +148,7 @@ def step_active_tiles(
     """
     thread = wp.tid()
     dt = wp.float32(clock[CLOCK_DT])
+    stable = wp.float32(clock[CLOCK_STABLE])
     time = wp.float32(clock[CLOCK_TIME])
     work = tile_count[0] * TILE_CELLS
     wave = float(0.0)
@@ -159,7 +160,7 @@ def step_active_tiles(
         col = (tile % tile_cols) * TILE_SIDE + cell % TILE_SIDE
         if row < s.nrows and col < s.ncols:
             if dt > 0.0:
-                wave = wp.max(wave, step_cell(f, s, row + 2, col + 2, dt, time))
+                wave = wp.max(wave, step_cell(f, s, row + 2, col + 2, dt, stable, time))
             else:
                 f.h_out[row + 2, col + 2] = f.h[row + 2, col + 2]
                 f.u_out[row + 2, col + 2] = f.u[row + 2, col + 2]

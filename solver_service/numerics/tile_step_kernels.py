@@ -20,7 +20,7 @@ bit.
 
 import warp as wp
 
-from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_TIME
+from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_STABLE, CLOCK_TIME
 from solver_service.numerics.conservative_update import film_speed, update_cell, widen_maxima
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.reconstruction import predict
@@ -154,7 +154,7 @@ STEP_SOURCE = (
     WP_TILE_SYNC();
 
     // update
-    const float film_speed = FILM_SPEED(s.courant, s.depth_cfl, dt);
+    const float film_speed = FILM_SPEED(s.courant, s.depth_cfl, stable);
     int highest = 0;
     for (int k = lane; k < 256; k += lanes) {
         const int r = k / 16, c = k % 16;
@@ -260,6 +260,7 @@ def step_tile(
     tile: int,
     tile_cols: int,
     dt: float,
+    stable: float,
     time: float,
     host_memory: wp.array(dtype=wp.float32),
     wave_slots: wp.array(dtype=wp.float32),
@@ -314,15 +315,16 @@ def step_listed_tiles(
     """
     block = wp.tid() // lane_count()
     dt = wp.float32(clock[CLOCK_DT])
+    stable = wp.float32(clock[CLOCK_STABLE])
     time = wp.float32(clock[CLOCK_TIME])
     if never():  # tells Warp to generate the functions that the native code calls
-        step_cell(f, s, 2, 2, dt, time)
+        step_cell(f, s, 2, 2, dt, stable, time)
     listed = tile_count[LISTED]
     count = listed + tile_count[ASLEEP]
     k = int(block)
     while k < count:
         if k < listed and dt > 0.0:
-            step_tile(f, s, tiles[k], tile_cols, dt, time, host_memory, wave_slots)
+            step_tile(f, s, tiles[k], tile_cols, dt, stable, time, host_memory, wave_slots)
         else:
             place = wp.where(k < listed, k, tiles.shape[0] - 1 - (k - listed))
             copy_tile(f, s, tiles[place], tile_cols)

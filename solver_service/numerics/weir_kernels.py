@@ -26,7 +26,7 @@ across.
 
 import warp as wp
 
-from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_TIME
+from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_STABLE, CLOCK_TIME
 from solver_service.numerics.conservative_update import arrival_time, film_speed, update_cell, widen_maxima
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.friction import GRAVITY
@@ -265,6 +265,7 @@ def step_beside_weirs(
     """
     c = wp.tid()
     dt = wp.float32(clock[CLOCK_DT])
+    stable = wp.float32(clock[CLOCK_STABLE])
     time = wp.float32(clock[CLOCK_TIME])
     i = cells[c, ROW]
     j = cells[c, COL]
@@ -296,7 +297,7 @@ def step_beside_weirs(
         f.h[i, j], f.u[i, j], f.v[i, j], p[0], e_x, e_y,
         e[0], e[1], e[3], w[0], w[2], w[3],
         n[0], n[1], n[3], b[0], b[2], b[3],
-        f.drag[i, j], dt, s.dx, s.depth_dry, s.depth_cfl, film_speed(s.courant, s.depth_cfl, dt),
+        f.drag[i, j], dt, s.dx, s.depth_dry, s.depth_cfl, film_speed(s.courant, s.depth_cfl, stable),
     )  # fmt: skip
     m = widen_maxima(
         q[0], q[1], q[2], q[3], f.h[i, j], dt, time, s.depth_arrival,

@@ -62,9 +62,19 @@ def mirrored(field: Array, along_x: float = 1.0, along_y: float = 1.0) -> Array:
 
 
 def take_step(
-    h: Array, u: Array, v: Array, z: Array, drag: Array, dx: float, dt: float, params: SolverParams
+    water: tuple[Array, Array, Array],
+    z: Array,
+    drag: Array,
+    dx: float,
+    dt: float,
+    stable: float,
+    params: SolverParams,
 ) -> tuple[Array, Array, Array]:
-    """Depth [m] and velocity [m/s] after ``dt`` [s]; ``z`` and ``drag`` carry two ghost cells."""
+    """Depth [m] and velocity [m/s] after ``dt`` [s], ``stable`` [s] where it is not cut short to land.
+
+    ``water`` is depth and velocity before; ``z`` and ``drag`` carry two ghost cells.
+    """
+    h, u, v = water
     ghosted = mirrored(h), mirrored(u, along_x=-1.0), mirrored(v, along_y=-1.0), z
     nrows, ncols = h.shape[0] + 2, h.shape[1] + 2
 
@@ -97,7 +107,7 @@ def take_step(
         east[0], east[1], east[3], west[0], west[2], west[3],
         north[0], north[1], north[3], south[0], south[2], south[3],
         drag[2:-2, 2:-2], dt, dx, params.depth_dry, params.depth_cfl,
-        STEP.film_speed(params.cfl * dx, params.depth_cfl, dt),
+        STEP.film_speed(params.cfl * dx, params.depth_cfl, stable),
     )  # fmt: skip
     around = ghosted[0]
     deepest = np.maximum.reduce([
@@ -120,11 +130,12 @@ def simulate(
     time, steps = 0.0, 0
     while time < until:
         wave = float((np.maximum(np.abs(u), np.abs(v)) + np.sqrt(STEP.GRAVITY * h)).max())
-        dt, left = params.cfl * model.dx / wave, until - time
+        stable, left = params.cfl * model.dx / wave, until - time
+        dt = stable
         if dt >= left:
             dt = left
         elif 2.0 * dt > left:
             dt = 0.5 * left
-        h, u, v = take_step(h, u, v, z, drag, model.dx, dt, params)
+        h, u, v = take_step((h, u, v), z, drag, model.dx, dt, stable, params)
         time, steps = (until if dt == left else time + dt), steps + 1
     return (h, u, v), steps

@@ -64,6 +64,7 @@ def step_tile_hastily(
     tile: int,
     tile_cols: int,
     dt: float,
+    stable: float,
     time: float,
     host_memory: wp.array(dtype=wp.float32),
     wave_slots: wp.array(dtype=wp.float32),
@@ -81,11 +82,11 @@ def step_one_tile(
     wave_slots: wp.array(dtype=wp.float32),
 ):
     if tile_step.never():
-        step_cell(f, s, 2, 2, 0.2, 1.0)
+        step_cell(f, s, 2, 2, 0.2, 0.2, 1.0)
     if hastily == 1:
-        step_tile_hastily(f, s, 0, 1, 0.2, 1.0, host_memory, wave_slots)
+        step_tile_hastily(f, s, 0, 1, 0.2, 0.2, 1.0, host_memory, wave_slots)
     else:
-        tile_step.step_tile(f, s, 0, 1, 0.2, 1.0, host_memory, wave_slots)
+        tile_step.step_tile(f, s, 0, 1, 0.2, 0.2, 1.0, host_memory, wave_slots)
 
 
 step_one_tile.module.options.update(STEP_MODULE.options)
