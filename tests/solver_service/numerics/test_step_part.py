@@ -8,7 +8,8 @@ import pytest
 from solver_service.numerics import SolverParams
 from solver_service.numerics.active_tiles import ActiveTiles
 from solver_service.numerics.after_step import parts_of
-from solver_service.numerics.fields import FieldStore
+from solver_service.numerics.edges import Edges
+from solver_service.numerics.fields import FieldStore, Scheme
 from tests.solver_service.numerics.floods import full_model
 
 MODEL = full_model()
@@ -17,7 +18,9 @@ MODEL = full_model()
 @pytest.fixture
 def parts():
     store = FieldStore(*MODEL.shape, "cpu")
-    return parts_of(MODEL, SolverParams(), store, ActiveTiles(store, 1e-5))
+    params = SolverParams()
+    edges = Edges(MODEL, params, store)
+    return parts_of(MODEL, params, store, ActiveTiles(store, 1e-5), Scheme(), edges)
 
 
 def test_no_two_parts_use_the_same_array_name(parts):
