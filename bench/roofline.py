@@ -6,7 +6,7 @@ at most, since both variants of the load are counted, and what is done once per 
 The row loops run the same functions, each once per cell and the face function twice, so that the floating
 point operations of a cell-step are known from there.
 
-A ceiling is what memory or arithmetic alone would allow. Rates of CPUs are measured here and now; no CUDA
+A ceiling is what memory or arithmetic alone would allow. The rate of a core is measured, in CPU time; no CUDA
 rate is measured by this bench (`python -m bench gpu` does, where there is a device).
 """
 
@@ -146,9 +146,9 @@ def figures(smoke: bool) -> Iterator[dict[str, object]]:
     solver.advance_to(6.0)
     best = float("inf")
     for _ in range(1 if smoke else 4):
-        steps, began = solver.step_count, time.perf_counter()
+        steps, began = solver.step_count, time.process_time()
         solver.advance_to(solver.time + 6.0)
-        best = min(best, (time.perf_counter() - began) / (solver.step_count - steps))
+        best = min(best, (time.process_time() - began) / (solver.step_count - steps))
     operations = cost[90].operations
     arithmetic, memory = vector_operations() / operations, copy_bandwidth() / cpu_bytes_per_cell_step()
     yield {

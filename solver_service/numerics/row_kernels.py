@@ -27,7 +27,7 @@ from solver_service.numerics.reconstruction import predict
 from solver_service.numerics.riemann import face_flux
 from solver_service.numerics.warp_modules import ROWS_MODULE
 
-CHUNK_COLS = 1024
+CHUNK_COLS = 2048
 """Widest chunk [cells]: its rows stay in the cache next to the core."""
 
 NARROW_COLS = 256
