@@ -43,4 +43,4 @@ def test_every_ceiling_names_what_limits_it():
         assert line["value"] == min(line["arithmetic_ceiling"], line["memory_ceiling"])
     assert lines["ceiling_H200"]["measured"] is None
     core = lines["ceiling_cpu_core"]
-    assert 0.0 < core["measured"] < core["value"]
+    assert 0.0 < core["measured"] < core["arithmetic_ceiling"]
