@@ -165,7 +165,8 @@ def normal_depth_state(h: float, u: float, drag: float, slope: float) -> edge_st
         c_b = 0.5 * invariant
         for _ in range(NEWTON_STEPS):
             root = wp.pow(c_b, 1.0 / 3.0)
-            c_b = c_b - (k * c_b * root + 2.0 * c_b - invariant) / (4.0 / 3.0 * k * root + 2.0)
+            excess = k * c_b * root + 2.0 * c_b - invariant
+            c_b = wp.max(c_b - excess / (4.0 / 3.0 * k * root + 2.0), 0.0)
         u_b = invariant - 2.0 * c_b
         if u_b > c_b:
             state = overfall(u, c)

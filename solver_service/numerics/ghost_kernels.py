@@ -141,7 +141,7 @@ def fill_ghost_cells(
         drop = z[a, b] - wp.where(by_x, z[a, b + step], z[a + step, b])
         friction_drop = float(0.0)
         if h[a, b] > 0.0:
-            root = inverse_cube_root(h[a, b])
+            root = inverse_cube_root(wp.max(h[a, b], 1.0e-6))
             slope = drag[a, b] * (root * root) * (root * root) * wp.abs(normal) * normal / GRAVITY
             friction_drop = wp.clamp(slope * dx, wp.min(drop, 0.0), wp.max(drop, 0.0))
         elif drop < 0.0:

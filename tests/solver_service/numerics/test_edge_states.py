@@ -42,7 +42,7 @@ def states(kind, h, u, a, b=0.0):
 
 
 RNG = np.random.default_rng(5)
-DEPTH = np.concatenate([[0.0, 1e-6, 1e-3], RNG.uniform(0.0, 6.0, 300)])[:, None]
+DEPTH = np.concatenate([[0.0, 1e-35, 1e-6, 1e-3], RNG.uniform(0.0, 6.0, 300)])[:, None]
 SPEED = np.concatenate([[0.0], RNG.normal(0.0, 4.0, 60)])[None]
 
 
@@ -136,6 +136,12 @@ def test_a_discharge_takes_out_no_more_than_critical_flow():
     assert h_b[0] * u_b[0] == pytest.approx(0.5, rel=2e-5)
     assert h_b[1] * u_b[1] == pytest.approx((2.0 / 3.0) ** 3 * np.sqrt(G), rel=2e-5)
     assert word[1:].tolist() == [FALLS, WALL]
+
+
+def test_a_smooth_bed_has_no_normal_depth_but_a_free_overfall():
+    *_, h_b, u_b, word = states(es.EDGE_NORMAL_DEPTH, RNG.uniform(0.05, 6.0, 80), 0.0, 0.0, 0.5)
+    assert (word == FALLS).all()
+    assert u_b == pytest.approx(np.sqrt(G * h_b), rel=1e-5)
 
 
 def test_normal_depth_obeys_manning():
