@@ -1,4 +1,4 @@
-"""From kill -9 of a worker to the sentence that a viewer reads, and to its first new frame, on a real socket."""
+"""From kill -9 of a worker to the sentence that a viewer reads, and to its first new frame."""
 
 from __future__ import annotations
 

@@ -97,6 +97,12 @@ def serve(
     allow_origin: Annotated[
         list[str] | None, typer.Option("--allow-origin", help="A web origin to serve; repeatable.")
     ] = None,
+    store_bytes: Annotated[
+        int | None, typer.Option("--store-bytes", min=1, help="Budget of frames and checkpoints [bytes].")
+    ] = None,
+    restart_attempts: Annotated[
+        int, typer.Option("--restart-attempts", min=0, help="Restarts of a run in ten minutes.")
+    ] = 3,
 ) -> None:
     """Serve runs to viewers until a signal stops it; writes one JSON line when it listens."""
     from solver_service.cli.serve import serve_runs
@@ -112,6 +118,8 @@ def serve(
         threads=threads,
         stop_with_stdin=stop_with_stdin,
         allowed_origins=tuple(allow_origin or ()),
+        store_bytes=store_bytes,
+        restart_attempts=restart_attempts,
     )
 
 

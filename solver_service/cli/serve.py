@@ -20,6 +20,8 @@ def serve_runs(
     threads: int | None,
     stop_with_stdin: bool,
     allowed_origins: tuple[str, ...],
+    store_bytes: int | None,
+    restart_attempts: int,
 ) -> None:
     """Serve until told to stop; the arguments are those of `ServiceSettings`, None for its defaults.
 
@@ -40,5 +42,7 @@ def serve_runs(
         device=device,
         threads=threads,
         allowed_origins=allowed_origins,
+        store_bytes=store_bytes,
+        restart_attempts=restart_attempts,
     )
     serve(settings if data_dir is None else dataclasses.replace(settings, data_dir=data_dir))

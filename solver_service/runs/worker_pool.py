@@ -69,10 +69,10 @@ class WorkerPool:
             RunError: all workers compute, or none can be started.
         """
         worker = self._spare(case, device) or self._left_over()
-        if worker is None and len(self._workers) >= MAX_WORKERS:
+        if worker is None and len(self._living()) >= MAX_WORKERS:
             raise RunError(f"{MAX_WORKERS} runs compute already; pause or stop one")
         if worker is None:
-            worker = await self._start()
+            worker = await self._start(run)
         worker.run = run
         self.start_spares(SPARE_DELAY_S)
         await worker.ready()
@@ -99,23 +99,28 @@ class WorkerPool:
 
     def _spares(self) -> list[Worker]:
         """Workers without a run that live on: one that was told to end must not be given another."""
-        return [w for w in self._workers if w.run is None and not (w.is_ending or w.is_dead)]
+        return [worker for worker in self._living() if worker.run is None]
+
+    def _living(self) -> list[Worker]:
+        return [worker for worker in self._workers if not (worker.is_ending or worker.is_dead)]
 
     def _left_over(self) -> Worker | None:
         """With many workers alive, one whose run does not need it; its state is on disk."""
-        if len(self._workers) < MAX_WORKERS - 1:
+        living = self._living()
+        if len(living) < MAX_WORKERS - 1:
             return None
-        return next((w for w in self._workers if w.run is not None and self._can_leave(w.run)), None)
+        return next((w for w in living if w.run is not None and self._can_leave(w.run)), None)
 
     async def _fill(self, delay_s: float) -> None:
         await asyncio.sleep(delay_s)
-        while not self._closing and len(self._workers) < MAX_WORKERS:
+        while not self._closing and len(self._living()) < MAX_WORKERS:
             if len(self._spares()) >= self._spare_count:
                 return
             await self._start()
 
-    async def _start(self) -> Worker:
+    async def _start(self, run: str | None = None) -> Worker:
         worker = Worker(self._on_report, self._died)
+        worker.run = run  # at once: who asks for a worker while this one starts must not get the same
         self._workers.append(worker)
         await worker.start(self._settings)
         return worker

@@ -2,7 +2,9 @@
 
 from pathlib import Path
 
-from bench.kills import kill_again_and_again
+import protocol
+from bench.kills import Tally, Watched, _check, kill_again_and_again
+from bench.service_process import ServiceClient, ServiceProcess
 
 
 def test_no_acknowledged_edit_or_frame_is_lost_by_five_kills_and_the_run_ends_with_the_very_bytes(
@@ -13,3 +15,13 @@ def test_no_acknowledged_edit_or_frame_is_lost_by_five_kills_and_the_run_ends_wi
     assert tally.finished_runs >= 1
     assert tally.received_frames > 0
     assert (tally.lost_edits, tally.lost_frames, tally.different_frames) == (0, 0, 0)
+
+
+def test_an_edit_or_a_frame_that_is_not_there_is_counted(service: ServiceProcess, case: str) -> None:
+    tally = Tally()
+    with ServiceClient(service) as client:
+        run = str(client.do(protocol.StartRun, case=case, paused=True)["run"])
+        client.do(protocol.Subscribe, run=run)
+        client.frame(run, 0)
+        _check(client, Watched(run, ["never-stored"], {0: b"other bytes", 7: b"never computed"}), tally)
+    assert (tally.lost_edits, tally.lost_frames) == (1, 2)

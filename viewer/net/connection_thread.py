@@ -95,6 +95,7 @@ class ConnectionThread:
         self.url = url
         self.mailbox: Mailbox[protocol.ClientEvent, protocol.Frame] = Mailbox()
         self.resume_point: protocol.ResumePoint | None = None
+        self._lost_session: str | None = None
         self._token = token
         self._client = client
         self._back_off = back_off if back_off is not None else BackOff()
@@ -182,15 +183,24 @@ class ConnectionThread:
         try:
             with self._lock:
                 self._session = session
-                self._outgoing.put(session.open(self.resume_point))
+                self._outgoing.put(session.open(self._resume()))
             return self._read(socket, session)
         finally:
+            if session.welcome is not None:
+                self._lost_session = session.welcome.session
             with self._lock:
                 self._session = None
             self._outgoing.put(None)
             socket.close()
             writer.join(CLOSE_TIMEOUT_S)
             self._socket = None
+
+    def _resume(self) -> protocol.ResumePoint | None:
+        """What was last known, and which connection was lost: the control of its runs comes back."""
+        point = self.resume_point
+        if point is None:
+            return None
+        return protocol.ResumePoint(point.run, point.last_index, point.revision, self._lost_session)
 
     def _open_socket(self, stack: contextlib.ExitStack) -> ClientConnection:
         headers = {} if self._token is None else {"Authorization": f"Bearer {self._token}"}

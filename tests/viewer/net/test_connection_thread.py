@@ -81,7 +81,7 @@ def test_no_more_frames_come_than_credit_was_granted(
     assert len(connection.mailbox.take_frames()) == 2
 
 
-def test_a_cut_connection_comes_back_and_says_what_it_knew(
+def test_a_cut_connection_comes_back_and_says_what_it_knew_and_which_session_it_replaces(
     service: TinyService, connection: ConnectionThread
 ) -> None:
     opened(connection)
@@ -91,7 +91,7 @@ def test_a_cut_connection_comes_back_and_says_what_it_knew(
     wait_for(lambda: connection.state.phase == "open")
 
     assert service.hellos[0].resume is None
-    assert service.hellos[1].resume == protocol.ResumePoint("run-1", 7, 3)
+    assert service.hellos[1].resume == protocol.ResumePoint("run-1", 7, 3, session="s1")
 
 
 def test_a_viewer_that_starts_before_the_service_waits_with_an_honest_countdown() -> None:
