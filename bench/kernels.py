@@ -5,6 +5,7 @@ One line per kernel and architecture; `value` is its registers. A floor is the m
 
 from __future__ import annotations
 
+import functools
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,6 +17,7 @@ ARCHITECTURES = (80, 90)
 STEP = "step_listed_tiles"
 
 
+@functools.cache
 def compiled_kernels(architecture: int) -> list[CompiledKernel]:
     """Every kernel of CUDA devices, compiled for a compute capability."""
     with tempfile.TemporaryDirectory() as folder:
