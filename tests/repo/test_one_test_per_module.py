@@ -25,7 +25,6 @@ TESTED_ELSEWHERE = {
     "solver_service/runs/case_catalogue.py": "tests/solver_service/runs/test_registry.py",
     "solver_service/runs/computation.py": "tests/end_to_end/test_stream_and_recalculate.py",
     "solver_service/runs/run_loop.py": "tests/end_to_end/test_stream_and_recalculate.py",
-    "solver_service/runs/run_reports.py": "tests/end_to_end/test_stream_and_recalculate.py",
     "solver_service/runs/run_tree.py": "tests/solver_service/runs/test_registry.py",
     "solver_service/runs/state_keeper.py": "tests/end_to_end/test_service_life.py",
     "solver_service/runs/store_thread.py": "tests/end_to_end/test_service_life.py",
