@@ -86,7 +86,7 @@ def show(pictures: list[Picture]) -> dict[str, list[str]]:
 def main(arguments: list[str]) -> int:
     """Run the folder, or the files named, and rewrite the page; a failing test leaves it as it was."""
     collector = Collector()
-    is_part = any(not word.startswith("-") for word in arguments)
+    is_part = any(Path(word.partition("::")[0]).exists() for word in arguments)
     what = arguments if is_part else [str(Path(__file__).parent), *arguments]
     status = pytest.main(["-q", *what], plugins=[collector])
     if status != pytest.ExitCode.OK:
