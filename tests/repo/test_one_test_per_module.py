@@ -14,6 +14,7 @@ TESTED_ELSEWHERE = {
     "solver_service/numerics/forcing_kernels.py": "tests/solver_service/numerics/test_forcing.py",
     "solver_service/numerics/gauge_kernels.py": "tests/solver_service/numerics/test_gauges.py",
     "solver_service/numerics/ghost_kernels.py": "tests/solver_service/numerics/test_engines.py",
+    "solver_service/numerics/infiltration_kernels.py": "tests/solver_service/numerics/test_infiltration.py",
     "solver_service/numerics/reconstruction.py": "tests/solver_service/numerics/test_engines.py",
     "solver_service/numerics/row_engine.py": "tests/solver_service/numerics/test_engines.py",
     "solver_service/numerics/row_kernels.py": "tests/solver_service/numerics/test_engines.py",
