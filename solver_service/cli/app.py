@@ -79,8 +79,14 @@ def list_all(json_line: JsonOption = False) -> None:
 
 @app.command()
 def serve(
-    host: Annotated[str, typer.Option("--host", help="Address to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="TCP port; 0 picks one.")] = 0,
+    config: Annotated[
+        Path | None, typer.Option("--config", help="Settings file (TOML); flags win over it.")
+    ] = None,
+    show_config: Annotated[
+        bool, typer.Option("--show-config", help="Tell the settings and where each comes from, and end.")
+    ] = False,
+    host: Annotated[str | None, typer.Option("--host", help="Address to listen on.")] = None,
+    port: Annotated[int | None, typer.Option("--port", help="TCP port; 0 picks one.")] = None,
     data_dir: Annotated[Path | None, typer.Option("--data-dir", help="Folder of the runs.")] = None,
     token_file: Annotated[Path | None, typer.Option("--token-file", help="File with the token.")] = None,
     ready_file: Annotated[
@@ -89,35 +95,37 @@ def serve(
     case: Annotated[
         list[str] | None, typer.Option("--case", help="A case to offer beside the known; repeatable.")
     ] = None,
-    device: DeviceOption = "auto",
+    device: Annotated[str | None, typer.Option("--device", help="auto, cpu or cuda:N.")] = None,
     threads: ThreadsOption = None,
     stop_with_stdin: Annotated[
-        bool, typer.Option("--stop-with-stdin", help="End when standard input closes.")
-    ] = False,
+        bool | None, typer.Option("--stop-with-stdin", help="End when standard input closes.")
+    ] = None,
     allow_origin: Annotated[
         list[str] | None, typer.Option("--allow-origin", help="A web origin to serve; repeatable.")
     ] = None,
     store_bytes: Annotated[
-        int | None, typer.Option("--store-bytes", min=1, help="Budget of frames and checkpoints [bytes].")
+        int | None, typer.Option("--store-bytes", help="Budget of frames and checkpoints [bytes].")
     ] = None,
     restart_attempts: Annotated[
-        int, typer.Option("--restart-attempts", min=0, help="Restarts of a run in ten minutes.")
-    ] = 3,
+        int | None, typer.Option("--restart-attempts", help="Restarts of a run in ten minutes.")
+    ] = None,
 ) -> None:
     """Serve runs to viewers until a signal stops it; writes one JSON line when it listens."""
     from solver_service.cli.serve import serve_runs
 
     serve_runs(
+        config,
+        show_config,
         host=host,
         port=port,
         data_dir=data_dir,
         token_file=token_file,
         ready_file=ready_file,
-        cases=tuple(case or ()),
+        cases=case or None,
         device=device,
         threads=threads,
         stop_with_stdin=stop_with_stdin,
-        allowed_origins=tuple(allow_origin or ()),
+        allowed_origins=allow_origin or None,
         store_bytes=store_bytes,
         restart_attempts=restart_attempts,
     )

@@ -3,6 +3,7 @@ from pathlib import Path
 import pytest
 
 import solver_service.web as web
+from solver_service.web.setting_keys import KEYS
 
 
 @pytest.fixture
@@ -48,5 +49,43 @@ def test_a_port_out_of_range_is_refused(fev_solver, settings) -> None:
 
     assert answer.code == 2
     assert "--port" in answer.err
+    assert "70000" in answer.err
     assert "65535" in answer.err
     assert settings == []
+
+
+def test_a_settings_file_and_the_environment_reach_the_service(
+    tmp_path: Path, fev_solver, settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    config = tmp_path / "server.toml"
+    config.write_text("port = 1\nthreads = 1\nspare_workers = 0\n")
+    monkeypatch.setenv("FEV_SERVE_THREADS", "2")
+
+    assert fev_solver("serve", "--config", config, "--port", "3").code == 0
+    assert settings == [web.ServiceSettings(port=3, threads=2, spare_workers=0)]
+
+
+def test_the_settings_can_be_shown_without_serving(tmp_path: Path, fev_solver, settings) -> None:
+    answer = fev_solver("serve", "--show-config", "--port", "8765")
+
+    assert answer.code == 0
+    assert "port = 8765  # flag --port" in answer.out.splitlines()
+    assert settings == []
+
+
+def test_a_wrong_settings_file_is_refused_in_one_sentence(tmp_path: Path, fev_solver, settings) -> None:
+    config = tmp_path / "server.toml"
+    config.write_text("prot = 1\n")
+
+    answer = fev_solver("serve", "--config", config)
+
+    assert answer.code == 2
+    assert len(answer.err.splitlines()) == 1
+    assert "'prot'" in answer.err
+    assert settings == []
+
+
+def test_every_flag_of_the_settings_is_an_option_of_the_command(fev_solver) -> None:
+    options = fev_solver("serve", "--help").out
+
+    assert not [key.flag for key in KEYS if key.flag is not None and f"{key.flag} " not in options]
