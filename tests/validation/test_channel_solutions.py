@@ -126,7 +126,7 @@ def test_rain_on_a_plane_satisfies_the_kinematic_wave(plane, time):
 
 
 def test_plane_gives_back_the_rain_that_fell_on_it():
-    times = np.linspace(0.0, 20000.0, 8001)
+    times = np.concatenate([np.linspace(0.0, 4000.0, 401), np.linspace(4050.0, 20000.0, 320)])
     left = np.trapezoid(PLANE.outflow(times), times)
     assert left == pytest.approx(PLANE.rain * PLANE.rain_end * PLANE.length, rel=2e-3)
     assert PLANE.concentration_time < PLANE.rain_end

@@ -28,6 +28,7 @@ BOUNDS = {
     "subcritical with rain": (4.0e-04, 4.1e-04, 1.0e-03, 3e-05, 7.5e-04),
     "supercritical with rain": (2.9e-04, 2.9e-04, 3.3e-04, 9e-05, 1.75e-03),
 }
+PICTURED = ("super- to subcritical", "short, smooth transition", "short, transition and jump")
 RAINED = {"L1 of h", "L2 of h", "Linf of h", "L1 of the velocity"}
 MISSES = {
     # In the cell that holds a jump h u is not the discharge that passes the faces.
@@ -75,12 +76,13 @@ def test_channel_becomes_steady_with_the_exact_profile(name, published, compare,
     computed, bounds = run(name), dict(zip(NORMS, BOUNDS[name], strict=True))
     missed = MISSES.get(name, ())
     compare(CASE, bounds, computed, exact(name), published[name], of=f", {name}", misses=missed)
-    x, _ = channels.places(CHANNELS[name], CELLS)
-    bed, every = CHANNELS[name].bed(x, 0.0 * x), slice(None, None, 4)
-    lines = [Line("bed", x, bed), Line("exact", x, bed + exact(name)[0])]
-    lines += [Line("other", x[every], (bed + published[name][0])[every])]
-    lines += [Line("computed", x[every], (bed + computed[0])[every])]
-    picture(CASE, "macdonald", Panel(name, "x [m]", "level [m]", tuple(lines)))
+    if name in PICTURED:
+        x, _ = channels.places(CHANNELS[name], CELLS)
+        bed, every = CHANNELS[name].bed(x, 0.0 * x), slice(None, None, 4)
+        lines = [Line("bed", x, bed), Line("exact", x, bed + exact(name)[0])]
+        lines += [Line("other", x[every], (bed + published[name][0])[every])]
+        lines += [Line("computed", x[every], (bed + computed[0])[every])]
+        picture(CASE, "macdonald", Panel(name, "x [m]", "level [m]", tuple(lines)))
 
 
 @pytest.mark.parametrize("name", ["subcritical", "short, transition and jump", "supercritical with rain"])
