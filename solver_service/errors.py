@@ -10,6 +10,7 @@
             StoreFull       there is no room in the data folder
         RunError            a run cannot do what was asked of it
         ServeError          the service cannot listen
+        AccessError         a token does not allow this, or the tokens cannot be read or written
 
 Every message is one sentence that names the file, key or cell, the value, and what is allowed.
 """
@@ -76,3 +77,7 @@ class RunError(ServiceError):
 
 class ServeError(ServiceError):
     """The service cannot listen."""
+
+
+class AccessError(ServiceError):
+    """A token does not allow this, or the tokens cannot be read or written."""

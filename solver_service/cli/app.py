@@ -103,6 +103,10 @@ def serve(
     allow_origin: Annotated[
         list[str] | None, typer.Option("--allow-origin", help="A web origin to serve; repeatable.")
     ] = None,
+    tls_certificate: Annotated[
+        Path | None, typer.Option("--tls-certificate", help="Certificate chain (PEM) for wss and https.")
+    ] = None,
+    tls_key: Annotated[Path | None, typer.Option("--tls-key", help="Key of the certificate (PEM).")] = None,
     store_bytes: Annotated[
         int | None, typer.Option("--store-bytes", help="Budget of frames and checkpoints [bytes].")
     ] = None,
@@ -126,6 +130,8 @@ def serve(
         threads=threads,
         stop_with_stdin=stop_with_stdin,
         allowed_origins=allow_origin or None,
+        tls_certificate=tls_certificate,
+        tls_key=tls_key,
         store_bytes=store_bytes,
         restart_attempts=restart_attempts,
     )
@@ -187,6 +193,44 @@ def store_log(
     from solver_service.cli.event_log import write_log
 
     write_log(run_id, out, data_dir)
+
+
+token = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Make, list and revoke tokens.")
+app.add_typer(token, name="token")
+
+
+@token.command("create")
+def token_create(
+    label: Annotated[str, typer.Argument(metavar="LABEL", help="Whose it is.")],
+    scope: Annotated[str, typer.Option("--scope", help="viewer, controller, operator or admin.")],
+    days: Annotated[
+        float | None, typer.Option("--days", help="Days until it expires; never, without.")
+    ] = None,
+    data_dir: DataDirOption = None,
+) -> None:
+    """Make a token and write it to standard output; it is told only now."""
+    from solver_service.cli.token import create_token
+
+    create_token(label, scope, days, data_dir)
+
+
+@token.command("list")
+def token_list(data_dir: DataDirOption = None, json_line: JsonOption = False) -> None:
+    """List the tokens: id, scope, state, when they expire, and whose they are."""
+    from solver_service.cli.token import list_tokens
+
+    list_tokens(data_dir, json_line)
+
+
+@token.command("revoke")
+def token_revoke(
+    token_id: Annotated[str, typer.Argument(metavar="ID", help="Id of the token, from the list.")],
+    data_dir: DataDirOption = None,
+) -> None:
+    """Revoke a token; a service that runs ends its connections within seconds."""
+    from solver_service.cli.token import revoke_token
+
+    revoke_token(token_id, data_dir)
 
 
 @app.command()

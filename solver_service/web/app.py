@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Annotated, Any
 
 import msgspec
@@ -10,11 +11,13 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
 
 from protocol import PROTOCOL_VERSION
-from solver_service.errors import ServiceError
+from solver_service.errors import AccessError, ServiceError
 from solver_service.runs import RunRegistry
-from solver_service.web.auth import Gate
+from solver_service.web.auth import Access, Gate
 from solver_service.web.error_codes import http_status, wire_code
+from solver_service.web.scopes import Scope
 from solver_service.web.stream import StreamConnection
+from solver_service.web.token_store import TokenStore
 from solver_service.web.version import SERVER_NAME, server_version
 
 
@@ -34,12 +37,13 @@ class RunCreated(BaseModel):
     run: str
 
 
-def create_app(registry: RunRegistry, gate: Gate) -> FastAPI:
+def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore) -> FastAPI:
     """Make the application.
 
     Args:
         registry: the runs; opened and closed by the caller.
         gate: who may come in.
+        tokens: the tokens that an admin looks at and revokes.
 
     Returns:
         The application; `app.state.connections` is the set of open streams.
@@ -48,13 +52,20 @@ def create_app(registry: RunRegistry, gate: Gate) -> FastAPI:
     connections: set[StreamConnection] = set()
     app.state.connections = connections
 
-    def authorised(request: Request) -> None:
-        if not gate.accepts_header(request.headers.get("authorization")):
-            raise HTTPException(
-                401,
-                "the Authorization header must carry 'Bearer' and the token",
-                {"WWW-Authenticate": "Bearer"},
-            )
+    def needs(scope: Scope) -> Any:
+        def check(request: Request) -> Access:
+            access = gate.access_by_header(request.headers.get("authorization"))
+            if access is None:
+                raise HTTPException(
+                    401,
+                    "the Authorization header must carry 'Bearer' and a token that holds",
+                    {"WWW-Authenticate": "Bearer"},
+                )
+            if access.scope < scope:
+                raise AccessError(f"this needs the scope {scope}; the token has the scope {access.scope}")
+            return access
+
+        return Depends(check)
 
     @app.exception_handler(ServiceError)
     def tell_service_error(request: Request, error: ServiceError) -> JSONResponse:
@@ -66,12 +77,12 @@ def create_app(registry: RunRegistry, gate: Gate) -> FastAPI:
         """Whether the service lives."""
         return {"status": "ok"}
 
-    @app.get("/version", dependencies=[Depends(authorised)])
+    @app.get("/version", dependencies=[needs(Scope.VIEWER)])
     def version() -> dict[str, str]:
         """Which service this is."""
         return {"server": SERVER_NAME, "version": server_version(), "protocol": PROTOCOL_VERSION}
 
-    @app.get("/v1/status", dependencies=[Depends(authorised)])
+    @app.get("/v1/status", dependencies=[needs(Scope.VIEWER)])
     async def status() -> dict[str, Any]:
         """How the service is getting on."""
         return {
@@ -82,17 +93,17 @@ def create_app(registry: RunRegistry, gate: Gate) -> FastAPI:
             "longest_publish_wait_s": registry.reports.longest_publish_wait_s,
         }
 
-    @app.get("/v1/cases", dependencies=[Depends(authorised)])
+    @app.get("/v1/cases", dependencies=[needs(Scope.VIEWER)])
     def cases() -> list[dict[str, Any]]:
         """The cases on offer."""
         return [msgspec.to_builtins(case) for case in registry.cases]
 
-    @app.get("/v1/runs", dependencies=[Depends(authorised)])
+    @app.get("/v1/runs", dependencies=[needs(Scope.VIEWER)])
     async def runs() -> list[dict[str, Any]]:
         """All runs, newest first."""
         return [msgspec.to_builtins(info) for info in registry.infos()]
 
-    @app.post("/v1/runs", dependencies=[Depends(authorised)], status_code=201)
+    @app.post("/v1/runs", dependencies=[needs(Scope.CONTROLLER)], status_code=201)
     async def start_run(body: RunRequest) -> RunCreated:
         """Start a run."""
         run = await registry.start_run(
@@ -100,13 +111,26 @@ def create_app(registry: RunRegistry, gate: Gate) -> FastAPI:
         )
         return RunCreated(run=run.run)
 
-    @app.get("/v1/runs/{run}", dependencies=[Depends(authorised)])
+    @app.get("/v1/runs/{run}", dependencies=[needs(Scope.VIEWER)])
     async def run_info(run: str) -> dict[str, Any]:
         """One run."""
         if run not in registry.tree:
             raise HTTPException(404, f"there is no run {run!r}")
         info: dict[str, Any] = msgspec.to_builtins(registry.tree.info(registry.tree.get(run)))
         return info
+
+    @app.get("/v1/tokens", dependencies=[needs(Scope.ADMIN)])
+    def token_list() -> list[dict[str, Any]]:
+        """The tokens there are, without their secrets; times in seconds since 1970."""
+        return [{**asdict(record), "scope": str(record.scope)} for record in tokens.records()]
+
+    @app.delete("/v1/tokens/{token}", dependencies=[needs(Scope.ADMIN)])
+    def revoke_token(token: str) -> dict[str, Any]:
+        """Revoke a token; its connections end within seconds."""
+        if token not in {record.id for record in tokens.records()}:
+            raise HTTPException(404, f"there is no token {token!r}")
+        record = tokens.revoke(token)
+        return {**asdict(record), "scope": str(record.scope)}
 
     @app.websocket("/v1/stream")
     async def stream(websocket: WebSocket) -> None:
@@ -115,8 +139,8 @@ def create_app(registry: RunRegistry, gate: Gate) -> FastAPI:
             await websocket.send_denial_response(refusal)
             return
         await websocket.accept(subprotocol=PROTOCOL_VERSION)
-        authorised = websocket.headers.get("authorization") is not None
-        connection = StreamConnection(websocket, registry, gate, authorised, connections)
+        access = gate.access_by_header(websocket.headers.get("authorization"))
+        connection = StreamConnection(websocket, registry, gate, access, connections)
         connections.add(connection)
         try:
             await connection.serve()
@@ -135,6 +159,6 @@ def _refusal(websocket: WebSocket, gate: Gate) -> Response | None:
         return Response(
             f"the websocket subprotocol {PROTOCOL_VERSION} must be offered\n", 400, media_type="text/plain"
         )
-    if "authorization" in headers and not gate.accepts_header(headers["authorization"]):
+    if "authorization" in headers and gate.access_by_header(headers["authorization"]) is None:
         return Response("the token is wrong\n", 401, media_type="text/plain")
     return None

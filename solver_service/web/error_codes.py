@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from protocol import ProtocolError
 from solver_service.errors import (
+    AccessError,
     CaseError,
     DeviceError,
     ModelError,
     RunError,
     ServiceError,
     StoreError,
+    StoreFull,
     TerrainError,
 )
 
 _CODES: dict[type[ServiceError], tuple[str, int]] = {
+    AccessError: ("forbidden", 403),
     RunError: ("refused", 409),
     StoreError: ("store_failed", 507),
+    StoreFull: ("store_failed", 507),
     DeviceError: ("no_such_device", 422),
     CaseError: ("invalid_case", 422),
     TerrainError: ("invalid_case", 422),

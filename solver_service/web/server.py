@@ -21,6 +21,9 @@ from solver_service.runs import RoomRules, RunRegistry
 from solver_service.web.app import create_app
 from solver_service.web.auth import Gate, load_token
 from solver_service.web.settings import ServiceSettings
+from solver_service.web.tls import check_tls
+from solver_service.web.token_store import TokenStore
+from solver_service.web.token_watch import watch_tokens
 
 BACKLOG = 128
 GOING_AWAY = 1001
@@ -38,6 +41,7 @@ def run_service(settings: ServiceSettings) -> None:
         StoreError: the data folder is in use or cannot be used.
         CaseError: an offered case cannot be read.
     """
+    check_tls(settings)
     listener = _listen(settings.host, settings.port)
     try:
         registry = RunRegistry(
@@ -52,11 +56,12 @@ def run_service(settings: ServiceSettings) -> None:
             restart_within_s=settings.restart_within_s,
             room=RoomRules(settings.store_bytes, settings.reserve_bytes),
         )
-        gate = Gate(load_token(settings.token_path), settings.allowed_origins)
+        tokens = TokenStore(settings.data_dir)
+        gate = Gate(load_token(settings.token_path), settings.allowed_origins, tokens)
     except BaseException:
         listener.close()
         raise
-    server = _Server(registry, gate, lambda: _tell_ready(settings, listener))
+    server = _Server(settings, registry, gate, tokens, lambda: _tell_ready(settings, listener))
     # uvicorn raises the signal that stopped it once more when it is done; it has done its work by then
     signal.signal(signal.SIGTERM, lambda number, frame: None)
     if settings.stop_with_stdin:
@@ -68,13 +73,24 @@ def run_service(settings: ServiceSettings) -> None:
 class _Server(uvicorn.Server):
     """A uvicorn server that opens and closes the runs around its own life."""
 
-    def __init__(self, registry: RunRegistry, gate: Gate, on_ready: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        settings: ServiceSettings,
+        registry: RunRegistry,
+        gate: Gate,
+        tokens: TokenStore,
+        on_ready: Callable[[], None],
+    ) -> None:
         self._registry = registry
+        self._gate = gate
+        self._tokens = tokens
         self._on_ready = on_ready
-        self._app = create_app(registry, gate)
+        self._app = create_app(registry, gate, tokens)
         super().__init__(
             uvicorn.Config(
                 self._app,
+                ssl_certfile=settings.tls_certificate,
+                ssl_keyfile=settings.tls_key,
                 ws="websockets-sansio",
                 ws_max_size=limits.INBOUND_MAX_BYTES,
                 ws_per_message_deflate=False,
@@ -89,13 +105,17 @@ class _Server(uvicorn.Server):
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await self._registry.open()
+        watch = watch_tokens(self._gate, self._app.state.connections)
+        self._watch = asyncio.get_running_loop().create_task(watch)
         await super().startup(sockets)
         self._on_ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        self._watch.cancel()
         for connection in tuple(self._app.state.connections):
             connection.end(GOING_AWAY, "the service is ending")
         await asyncio.gather(super().shutdown(sockets), self._registry.close())
+        self._tokens.close()
 
     def stop_with_stdin(self) -> None:
         """Wait for the end of standard input, then stop.
@@ -137,11 +157,12 @@ def _listen(host: str, port: int) -> socket.socket:
 def _tell_ready(settings: ServiceSettings, listener: socket.socket) -> None:
     host, port = listener.getsockname()[:2]
     host = f"[{host}]" if ":" in host else host
+    secure = "" if settings.tls_certificate is None else "s"
     line = json.dumps(
         {
             "event": "listening",
-            "url": f"ws://{host}:{port}/v1/stream",
-            "http": f"http://{host}:{port}",
+            "url": f"ws{secure}://{host}:{port}/v1/stream",
+            "http": f"http{secure}://{host}:{port}",
             "pid": os.getpid(),
             "token_file": str(settings.token_path),
             "data_dir": str(settings.data_dir),

@@ -132,6 +132,8 @@ KEYS: tuple[SettingKey, ...] = (
         "web origins that are served beside the own address",
         "--allow-origin",
     ),
+    SettingKey("tls_certificate", "path", "file with the certificate chain (PEM)", "--tls-certificate"),
+    SettingKey("tls_key", "path", "file with the key of the certificate (PEM)", "--tls-key"),
     SettingKey("ring_bytes", "integer", "memory of a worker for recent states [bytes]", least=1 << 20),
     SettingKey("checkpoint_interval_s", "number", "wall time between checkpoints [s]", least=0.001, most=1e6),
     SettingKey("spare_workers", "integer", "warm workers that stand by", least=0, most=6),

@@ -27,6 +27,8 @@ class ServiceSettings:
         threads: solver threads of a worker on the CPU; None for all cores.
         allowed_origins: values of the Origin header that are served beside the own address; native viewers
             send none.
+        tls_certificate: file with the certificate chain (PEM); with it the stream and REST are encrypted.
+        tls_key: file with the key of the certificate (PEM).
         ring_bytes: memory in which a worker keeps recent states for Recalculate [bytes].
         checkpoint_interval_s: wall time between checkpoints on disk [s].
         spare_workers: warm workers that stand by.
@@ -46,6 +48,8 @@ class ServiceSettings:
     device: str = "auto"
     threads: int | None = None
     allowed_origins: tuple[str, ...] = ()
+    tls_certificate: Path | None = None
+    tls_key: Path | None = None
     ring_bytes: int = 1 << 30
     checkpoint_interval_s: float = 60.0
     spare_workers: int = 1

@@ -33,11 +33,12 @@ from protocol import (
 )
 from solver_service.errors import ServiceError, StoreError
 from solver_service.runs import RunRegistry, Session
-from solver_service.web.auth import Gate
+from solver_service.web.auth import Access, Gate
 from solver_service.web.commands import carry_out
 from solver_service.web.error_codes import wire_code
 from solver_service.web.frame_feed import FrameFeed
 from solver_service.web.outbox import Outbox
+from solver_service.web.scopes import check_scope
 from solver_service.web.version import SERVER_NAME, server_version
 
 LOG = logging.getLogger(__name__)
@@ -45,6 +46,7 @@ LOG = logging.getLogger(__name__)
 HELLO_TIMEOUT_S = 5.0
 SEND_TIMEOUT_S = 20.0
 POLICY_VIOLATION = 1008
+INTERNAL_ERROR = 1011
 REPLACED = 4001
 
 
@@ -60,7 +62,7 @@ class StreamConnection:
         websocket: WebSocket,
         registry: RunRegistry,
         gate: Gate,
-        authorised: bool,
+        access: Access | None,
         others: Set[StreamConnection] = frozenset(),
     ) -> None:
         """A connection that has been accepted.
@@ -69,7 +71,7 @@ class StreamConnection:
             websocket: the socket.
             registry: the runs.
             gate: who may come in.
-            authorised: whether the Authorization header carried the token.
+            access: what the token of the Authorization header allows; None where the hello must bring one.
             others: the connections there are, itself included.
         """
         self.session = ServerSession()
@@ -80,7 +82,7 @@ class StreamConnection:
         self._others = others
         self._websocket = websocket
         self._gate = gate
-        self._authorised = authorised
+        self.access = access
         self._commands: asyncio.Queue[Command] = asyncio.Queue()
         self._busy_with: Command | None = None
         self._held: list[ServerMessage] = []
@@ -103,6 +105,11 @@ class StreamConnection:
     def end(self, code: int, reason: str) -> None:
         """Close the connection from our side."""
         self.outbox.close(code, reason)
+
+    def withdraw(self) -> None:
+        """Tell the client that its token no longer holds, and close."""
+        if self.outbox.closing is None and self.session.state is not SessionState.CLOSED:
+            self._refuse(POLICY_VIOLATION, "wrong_token", "The token was revoked or has expired.")
 
     @property
     def identity(self) -> Session:
@@ -167,7 +174,12 @@ class StreamConnection:
             return
         if not isinstance(hello, Hello):
             return
-        if not (self._authorised or self._gate.accepts_token(hello.token)):
+        try:
+            self.access = self.access or self._gate.access(hello.token)
+        except StoreError as error:
+            self._refuse(INTERNAL_ERROR, wire_code(error), str(error))
+            return
+        if self.access is None:
             self._refuse(POLICY_VIOLATION, "wrong_token", "The token is missing or wrong.")
             return
         self._welcome(hello)
@@ -183,6 +195,10 @@ class StreamConnection:
             command = await self._commands.get()
             self._busy_with = command
             try:
+                if self.access is None or not self._gate.still_holds(self.access):
+                    self.withdraw()
+                    continue
+                check_scope(command, self.access.scope)
                 # what has begun is carried to its end although the connection may end meanwhile
                 await self.registry.carry_through(carry_out(command, self))
             except (ServiceError, ProtocolError) as error:
@@ -261,7 +277,7 @@ class StreamConnection:
     def _replace(self, lost: str) -> None:
         """Take the place of a connection that may not know yet that it is lost."""
         for other in self._others:
-            if other.name == lost and other is not self:
+            if other.name == lost and other is not self and other.access == self.access:
                 self.registry.controllers.replaced(lost, self.identity)
                 other.end(REPLACED, f"session {self.name} has taken the place of this one")
 

@@ -4,7 +4,9 @@ from pathlib import Path
 import pytest
 
 from solver_service.errors import ServeError
-from solver_service.web.auth import Gate, load_token
+from solver_service.web.auth import LOCAL, Access, Gate, load_token
+from solver_service.web.scopes import Scope
+from solver_service.web.token_store import TokenStore
 
 TOKEN = "0123456789abcdefghij"
 
@@ -41,7 +43,7 @@ def test_a_file_that_holds_no_token_is_refused(tmp_path: Path, content: str) -> 
     ],
 )
 def test_a_header_is_accepted_only_with_the_very_token(header: str | None, accepted: bool) -> None:
-    assert Gate(TOKEN).accepts_header(header) is accepted
+    assert (Gate(TOKEN).access_by_header(header) is LOCAL) is accepted
 
 
 @pytest.mark.parametrize(
@@ -59,3 +61,23 @@ def test_a_header_is_accepted_only_with_the_very_token(header: str | None, accep
 def test_pages_of_strangers_are_refused(origin: str | None, accepted: bool) -> None:
     gate = Gate(TOKEN, ("https://map.example",))
     assert gate.accepts_origin(origin, "127.0.0.1:8000") is accepted
+
+
+def test_a_token_of_the_store_opens_with_its_scope_beside_the_token_of_the_file(tmp_path: Path) -> None:
+    store = TokenStore(tmp_path)
+    token, record = store.create("Ada", Scope.VIEWER, None)
+    gate = Gate(TOKEN, tokens=store)
+
+    ada = gate.access_by_header(f"Bearer {token}")
+    assert ada == Access(Scope.VIEWER, record.id, "Ada")
+    assert gate.access(TOKEN) == LOCAL
+    assert LOCAL.scope is Scope.OPERATOR
+    assert gate.access(None) is None
+    assert gate.access(f"{token}x") is None
+    assert Gate(TOKEN).access(token) is None
+    assert gate.still_holds(ada)
+    store.revoke(record.id)
+    assert not gate.still_holds(ada)
+    assert gate.access(token) is None
+    assert gate.still_holds(LOCAL)
+    store.close()

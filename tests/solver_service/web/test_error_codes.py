@@ -1,15 +1,25 @@
 import pytest
 
 from protocol.errors import ProtocolError
-from solver_service.errors import CaseError, DeviceError, RunError, ServeError, StoreError, TerrainError
+from solver_service.errors import (
+    AccessError,
+    CaseError,
+    DeviceError,
+    RunError,
+    ServeError,
+    StoreError,
+    TerrainError,
+)
 from solver_service.web.error_codes import http_status, wire_code
 
 
 @pytest.mark.parametrize(
     ("error", "code", "status"),
     [
+        (AccessError("x"), "forbidden", 403),
         (RunError("x"), "refused", 409),
         (StoreError("x"), "store_failed", 507),
+        (StoreFull("x"), "store_failed", 507),
         (DeviceError("x"), "no_such_device", 422),
         (CaseError("x"), "invalid_case", 422),
         (TerrainError("x"), "invalid_case", 422),
