@@ -8,6 +8,7 @@ from solver_service.errors import (
     RunError,
     ServeError,
     StoreError,
+    StoreFull,
     TerrainError,
 )
 from solver_service.web.error_codes import http_status, wire_code
