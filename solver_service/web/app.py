@@ -15,6 +15,7 @@ from solver_service.errors import AccessError, ServiceError
 from solver_service.runs import RunRegistry
 from solver_service.web.auth import Access, Gate
 from solver_service.web.error_codes import http_status, wire_code
+from solver_service.web.metrics import CONTENT_TYPE, metrics_text, unready_reason
 from solver_service.web.scopes import Scope
 from solver_service.web.stream import StreamConnection
 from solver_service.web.token_store import TokenStore
@@ -46,11 +47,13 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore) -> FastAPI
         tokens: the tokens that an admin looks at and revokes.
 
     Returns:
-        The application; `app.state.connections` is the set of open streams.
+        The application; `app.state.connections` is the set of open streams, `app.state.accepts` is set while
+        new viewers are welcome.
     """
     app = FastAPI(title="FEV solver service", version=server_version())
     connections: set[StreamConnection] = set()
     app.state.connections = connections
+    app.state.accepts = False
 
     def needs(scope: Scope) -> Any:
         def check(request: Request) -> Access:
@@ -77,10 +80,31 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore) -> FastAPI
         """Whether the service lives."""
         return {"status": "ok"}
 
+    @app.get("/readyz")
+    def readyz(response: Response) -> dict[str, str]:
+        """Whether new viewers should come: 200, or 503 with the reason."""
+        reason = unready_reason(app.state.accepts, tokens.path.parent)
+        if reason is None:
+            return {"status": "ready"}
+        response.status_code = 503
+        return {"status": "not ready", "reason": reason}
+
+    @app.get("/metrics", dependencies=[needs(Scope.VIEWER)])
+    async def metrics() -> Response:
+        """Gauges in the text format of Prometheus."""
+        text = metrics_text(registry, len(connections), tokens.path.parent)
+        return Response(text, headers={"Content-Type": CONTENT_TYPE})
+
     @app.get("/version", dependencies=[needs(Scope.VIEWER)])
     def version() -> dict[str, str]:
         """Which service this is."""
         return {"server": SERVER_NAME, "version": server_version(), "protocol": PROTOCOL_VERSION}
+
+    @app.get("/v1/connections", dependencies=[needs(Scope.OPERATOR)])
+    async def connection_list() -> list[dict[str, Any]]:
+        """The open streams, oldest first: who, from where, as what, since when, watching which run."""
+        facts = [connection.facts() for connection in connections]
+        return sorted(facts, key=lambda fact: (fact["since"], fact["session"]))
 
     @app.get("/v1/status", dependencies=[needs(Scope.VIEWER)])
     async def status() -> dict[str, Any]:

@@ -108,9 +108,11 @@ class _Server(uvicorn.Server):
         watch = watch_tokens(self._gate, self._app.state.connections)
         self._watch = asyncio.get_running_loop().create_task(watch)
         await super().startup(sockets)
+        self._app.state.accepts = True
         self._on_ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        self._app.state.accepts = False
         self._watch.cancel()
         for connection in tuple(self._app.state.connections):
             connection.end(GOING_AWAY, "the service is ending")

@@ -5,7 +5,9 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
+import time
 from collections.abc import Set
+from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -83,6 +85,7 @@ class StreamConnection:
         self._websocket = websocket
         self._gate = gate
         self.access = access
+        self._since = time.time()
         self._commands: asyncio.Queue[Command] = asyncio.Queue()
         self._busy_with: Command | None = None
         self._held: list[ServerMessage] = []
@@ -110,6 +113,19 @@ class StreamConnection:
         """Tell the client that its token no longer holds, and close."""
         if self.outbox.closing is None and self.session.state is not SessionState.CLOSED:
             self._refuse(POLICY_VIOLATION, "wrong_token", "The token was revoked or has expired.")
+
+    def facts(self) -> dict[str, Any]:
+        """What an operator wants to know of the connection; `since` in seconds since 1970."""
+        client = self._websocket.client
+        return {
+            "session": self.name,
+            "client": self.identity.client,
+            "address": "" if client is None else f"{client.host}:{client.port}",
+            "token": None if self.access is None else self.access.label,
+            "scope": None if self.access is None else str(self.access.scope),
+            "run": self.feed.run,
+            "since": self._since,
+        }
 
     @property
     def identity(self) -> Session:

@@ -42,7 +42,7 @@ def test_help_lists_every_command_and_loads_no_solver() -> None:
         (("run", "{case}", "--cell-size", "-1"), "cell size is -1 m; 0.001 to 100000 m"),
         (("run", "{case}", "--zarr"), "need an output folder; give --out"),
         (("run", "{case}", "--out", "{case}/case.toml"), "is a file; a folder is allowed"),
-        (("serve", "--threads", "0"), "--threads is 0; 1 or more"),
+        (("serve", "--threads", "0"), "--threads is 0; a whole number from 1"),
         (("export", "abc", "--out", "{case}/out", "--data-dir", "{case}"), "holds no runs"),
     ],
 )

@@ -5,7 +5,8 @@ import time
 import httpx
 import pytest
 
-from bench.service_process import ServiceProcess
+import protocol
+from bench.service_process import ServiceClient, ServiceProcess
 
 
 @pytest.fixture
@@ -74,3 +75,20 @@ def test_a_run_that_cannot_be_is_refused_in_words(
 def test_a_run_that_is_not_there_is_not_found(rest: httpx.Client) -> None:
     assert rest.get("/v1/runs/r000").status_code == 404
     assert rest.get("/v1/runs/..%2F..%2Fetc").status_code == 404
+
+
+def test_the_open_streams_are_listed_with_who_and_what(service: ServiceProcess, rest: httpx.Client) -> None:
+    run = rest.post("/v1/runs", json={"case": "dam-break", "paused": True}).json()["run"]
+    before = {stream["session"] for stream in rest.get("/v1/connections").json()}
+    with ServiceClient(service) as client:
+        client.do(protocol.Subscribe, run=run)
+        (stream,) = (s for s in rest.get("/v1/connections").json() if s["session"] not in before)
+        assert (stream["client"], stream["run"], stream["scope"]) == ("fev-bench", run, "operator")
+        assert stream["token"] == "token file"
+        assert stream["address"].startswith("127.0.0.1:")
+        assert abs(time.time() - stream["since"]) < 60.0
+        name = stream["session"]
+    ends = time.monotonic() + 10.0
+    while name in {s["session"] for s in rest.get("/v1/connections").json()}:
+        assert time.monotonic() < ends
+        time.sleep(0.05)

@@ -13,10 +13,12 @@ from bench.service_process import ServiceProcess
 from solver_service.web.scopes import Scope
 from solver_service.web.token_store import TokenStore
 
-PUBLIC = {("get", "/healthz")}
+PUBLIC = {("get", "/healthz"), ("get", "/readyz")}
 ROUTES = {
     ("get", "/version"): Scope.VIEWER,
+    ("get", "/metrics"): Scope.VIEWER,
     ("get", "/v1/status"): Scope.VIEWER,
+    ("get", "/v1/connections"): Scope.OPERATOR,
     ("get", "/v1/cases"): Scope.VIEWER,
     ("get", "/v1/runs"): Scope.VIEWER,
     ("get", "/v1/runs/{run}"): Scope.VIEWER,
