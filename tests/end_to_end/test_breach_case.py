@@ -1,0 +1,97 @@
+"""A levee that breaks, with nearly everything a case may hold: the service gives the frames of the solver."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import protocol
+from bench.service_process import ServiceClient, ServiceProcess
+from protocol import BlockLayout, EditLine, EditType, Operation, apply_edits
+from solver_service.numerics import ShallowWaterSolver
+from solver_service.scenario import Case, load_case
+
+FOLDER = str(Path(__file__).parents[2] / "examples" / "levee_breach")
+LAST = 20
+BEFORE, AFTER = 3, 9
+"""Frames at which is branched: the levee breaks at frame 5."""
+DIKE = EditLine(
+    id="dike",
+    vertices=((150.0, 190.0), (290.0, 210.0)),
+    width=20.0,
+    operation=Operation.raise_,
+    type=EditType.modulate,
+    magnitude=1.5,
+)
+
+
+@pytest.fixture(scope="module")
+def levee_case() -> Case:
+    return load_case(FOLDER)
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ServiceProcess]:
+    with ServiceProcess(tmp_path_factory.mktemp("data"), cases=[FOLDER], threads=1) as service:
+        yield service
+
+
+@pytest.fixture
+def client(service: ServiceProcess, levee_case: Case) -> Iterator[ServiceClient]:
+    layout = BlockLayout(levee_case.grid.nrows, levee_case.grid.ncols)
+    with ServiceClient(service, layout=layout) as client:
+        yield client
+
+
+def offline(case: Case, edit_at: int | None = None) -> Callable[[int, float], np.ndarray]:
+    """The quantised water of each output time of a run from scratch; the dike is drawn at a frame."""
+    solver = ShallowWaterSolver(case.model, case.params, "cpu")
+    solver.set_water(case.initial_h)
+    depths = []
+    for index in range(LAST + 1):
+        solver.advance_to(index * case.output_interval)
+        if index == edit_at:
+            solver.replace_bed(apply_edits(case.z_b, [DIKE], case.grid).z_b)
+        depths.append(solver.depth())
+    return lambda index, scale: protocol.quantise_depth(depths[index], scale, case.params.depth_dry)
+
+
+def finish(client: ServiceClient, run: str) -> None:
+    while {info.run: info.status for info in client.ask(protocol.ListRuns).runs}[run] != "finished":
+        client.first(protocol.RunChanged)
+
+
+def frames(client: ServiceClient, run: str, first: int) -> list[protocol.DecodedFrame]:
+    client.do(protocol.Subscribe, run=run, from_index=first, mode="replay", credit=8)
+    while (run, LAST) not in client.decoded:
+        client.first(protocol.Frame)
+    client.do(protocol.Unsubscribe)
+    return [client.decoded[run, index] for index in range(first, LAST + 1)]
+
+
+def start(client: ServiceClient) -> str:
+    run = str(client.do(protocol.StartRun, case=FOLDER)["run"])
+    finish(client, run)
+    return run
+
+
+def test_every_frame_is_that_of_the_solver_alone_bit_for_bit(client: ServiceClient, levee_case: Case) -> None:
+    expected = offline(levee_case)
+    for frame in frames(client, start(client), 0):
+        np.testing.assert_array_equal(frame.q, expected(frame.index, frame.scale))
+
+
+@pytest.mark.parametrize("index", [BEFORE, AFTER])
+def test_a_branch_before_or_in_the_breach_is_a_run_from_scratch_with_the_edit_then(
+    client: ServiceClient, levee_case: Case, index: int
+) -> None:
+    run = start(client)
+    revision = client.do(protocol.AppendEdit, run=run, edit=DIKE)["revision"]
+    child = str(client.do(protocol.Recalculate, run=run, index=index, revision=revision)["run"])
+    finish(client, child)
+    expected, unedited = offline(levee_case, index), offline(levee_case)
+    branch = frames(client, child, index)
+    for frame in branch:
+        np.testing.assert_array_equal(frame.q, expected(frame.index, frame.scale))
+    assert (branch[-1].q != unedited(LAST, branch[-1].scale)).any()
