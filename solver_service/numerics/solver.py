@@ -338,6 +338,8 @@ class ShallowWaterSolver:
     def replace_bed(self, z_b: npt.ArrayLike) -> BedChange:
         """Set the bed [m], effective at once; see `bed_change` for the water on it.
 
+        The same bed again changes nothing: what follows is bit for bit what would have followed.
+
         Raises:
             ModelError: when shape or values are not valid.
         """
@@ -346,8 +348,11 @@ class ShallowWaterSolver:
         self._set_bed(bed)
         if self._breaches is not None:
             self._breaches.take_ground()
-        self._edges.change_rest(before, self.bed)
-        change = change_water(self._store, before, self.bed, self.params.depth_dry, self.model.dx)
+        after = self.bed
+        if np.array_equal(before, after):
+            return BedChange(volume_cut=0.0, changed_cells=0)
+        self._edges.change_rest(before, after)
+        change = change_water(self._store, before, after, self.params.depth_dry, self.model.dx)
         self._edits_volume += change.volume_cut
         end_wet_spells(self._store, self.time, self.params.depth_arrival)
         if self._weirs is not None:

@@ -83,7 +83,7 @@ def test_every_frame_is_that_of_the_solver_alone_bit_for_bit(client: ServiceClie
 
 
 @pytest.mark.parametrize("index", [BEFORE, AFTER])
-def test_a_branch_before_or_in_the_breach_is_a_run_from_scratch_with_the_edit_then(
+def test_a_branch_before_or_in_the_breach_is_a_run_from_scratch_with_the_edit_then_and_undone_is_the_parent(
     client: ServiceClient, levee_case: Case, index: int
 ) -> None:
     run = start(client)
@@ -95,3 +95,9 @@ def test_a_branch_before_or_in_the_breach_is_a_run_from_scratch_with_the_edit_th
     for frame in branch:
         np.testing.assert_array_equal(frame.q, expected(frame.index, frame.scale))
     assert (branch[-1].q != unedited(LAST, branch[-1].scale)).any()
+
+    revision = client.do(protocol.UndoEdit, run=run)["revision"]
+    undone = str(client.do(protocol.Recalculate, run=run, index=index, revision=revision)["run"])
+    finish(client, undone)
+    for frame in frames(client, undone, index):
+        np.testing.assert_array_equal(frame.q, unedited(frame.index, frame.scale))

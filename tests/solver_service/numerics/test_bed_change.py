@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solver_service.numerics import FloodModel, ModelError
+from solver_service.numerics import EdgeBoundary, FloodModel, ModelError
 from tests.solver_service.numerics.floods import bed, differences, solver
 
 
@@ -83,3 +83,25 @@ def test_a_bed_that_is_not_valid_is_refused(shape, value, words):
     s, _ = lake()
     with pytest.raises(ModelError, match=words):
         s.replace_bed(np.full(shape, value))
+
+
+def test_the_same_bed_again_changes_nothing_that_follows():
+    z = bed((50, 60))
+    river = EdgeBoundary(
+        "west", "discharge", 10, 40, times=[0.0, 8.0, 9.0, 40.0], values=[0.0, 0.0, 900.0, 900.0]
+    )
+
+    def flood():
+        """A pond that is about to be hit by a wave from the edge, which shortens the step ahead of it."""
+        s = solver(FloodModel(5.0, z, 0.03, boundaries=(river,)), threads=1)
+        s.set_water(np.maximum(np.float32(0.6) - z, 0.0))
+        s.advance_to(8.5)
+        return s
+
+    one, other = flood(), flood()
+    change = other.replace_bed(z.copy())
+    one.advance_to(20.0)
+    other.advance_to(20.0)
+
+    assert (change.volume_cut, change.changed_cells) == (0.0, 0)
+    assert differences(one, other) == []
