@@ -2,7 +2,7 @@
 
 Discharge enters through the western edge; in the east stands the level, or the flow leaves fast. It begins
 with water at rest (behind the bump, where the flow will be fast, 20 cm of it), and no friction calms the
-waves that run to and fro between the edges.
+waves that run back and forth between the edges.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ BOUNDS = {
 MISSES = {
     # The bed of the cells at the crest is flat under the limiter, as it is with minmod.
     "transcritical": {"L1 of h", "L2 of h", "Linf of h"},
-    # Waves that still run to and fro, and h u in the cell of the jump.
+    # Waves that still run back and forth, and h u in the cell of the jump.
     "with a jump": {"L1 of h", "L1 of the unit discharge", "L1 of the velocity"},
 }
 
