@@ -9,7 +9,13 @@ launch, hence the captured graph, does not depend on how many tiles are active.
 import warp as wp
 
 from solver_service.numerics.clock_kernels import CLOCK_DT, CLOCK_STABLE, CLOCK_TIME
-from solver_service.numerics.conservative_update import arrival_time, film_speed, update_cell, widen_maxima
+from solver_service.numerics.conservative_update import (
+    arrival_time,
+    film_speed,
+    maxima,
+    update_cell,
+    widen_maxima,
+)
 from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.reconstruction import predict, prediction
 from solver_service.numerics.riemann import face_flux
@@ -75,6 +81,19 @@ def flux_y(l: prediction, r: prediction, z_step: float, dt_dx: float, contact: f
 
 
 @wp.func
+def keep_maxima(f: Fields, i: int, j: int, m: maxima):
+    """Write what `widen_maxima` has found for padded cell (i, j)."""
+    f.h_max[i, j] = m[0]
+    f.h_max_time[i, j] = m[1]
+    f.speed_max[i, j] = m[2]
+    f.discharge_max[i, j] = m[3]
+    f.hazard_max[i, j] = m[4]
+    f.arrival[i, j] = m[5]
+    f.wet_since[i, j] = m[7]
+    f.rise_rate_max[i, j] = m[8]
+
+
+@wp.func
 def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, stable: float, time: float) -> float:
     """Advance padded cell (i, j); returns its wave speed [m/s]."""
     h = f.h[i, j]
@@ -111,14 +130,7 @@ def step_cell(f: Fields, s: Scheme, i: int, j: int, dt: float, stable: float, ti
     f.h_out[i, j] = q[0]
     f.u_out[i, j] = q[1]
     f.v_out[i, j] = q[2]
-    f.h_max[i, j] = m[0]
-    f.h_max_time[i, j] = m[1]
-    f.speed_max[i, j] = m[2]
-    f.discharge_max[i, j] = m[3]
-    f.hazard_max[i, j] = m[4]
-    f.arrival[i, j] = m[5]
-    f.wet_since[i, j] = m[7]
-    f.rise_rate_max[i, j] = m[8]
+    keep_maxima(f, i, j, m)
     return m[6]
 
 

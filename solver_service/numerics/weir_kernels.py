@@ -32,7 +32,7 @@ from solver_service.numerics.fields import Fields, Scheme
 from solver_service.numerics.friction import GRAVITY
 from solver_service.numerics.reconstruction import prediction
 from solver_service.numerics.riemann import FACE_TOLERANCE, LAST_PLACE
-from solver_service.numerics.step_kernels import flux_x, flux_y, predict_at
+from solver_service.numerics.step_kernels import flux_x, flux_y, keep_maxima, predict_at
 from solver_service.numerics.warp_modules import STRUCTURE_MODULE
 
 ROW = wp.constant(0)
@@ -306,14 +306,7 @@ def step_beside_weirs(
     f.h_out[i, j] = q[0]
     f.u_out[i, j] = q[1]
     f.v_out[i, j] = q[2]
-    f.h_max[i, j] = m[0]
-    f.h_max_time[i, j] = m[1]
-    f.speed_max[i, j] = m[2]
-    f.discharge_max[i, j] = m[3]
-    f.hazard_max[i, j] = m[4]
-    f.arrival[i, j] = m[5]
-    f.wet_since[i, j] = m[7]
-    f.rise_rate_max[i, j] = m[8]
+    keep_maxima(f, i, j, m)
     for k in range(f.class_depths.shape[0]):
         f.class_arrival[k, i, j] = arrival_time(q[0], f.class_depths[k], time, kept[c, KEPT_LENGTH + k])
     remember(f, i, j, c, kept)
