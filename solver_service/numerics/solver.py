@@ -69,7 +69,8 @@ class ShallowWaterSolver:
         drag = float(GRAVITY) * np.broadcast_to(np.asarray(model.manning_n, np.float64), model.shape) ** 2
         store.write_padded("drag", np.pad(drag.astype(np.float32), 2, mode="symmetric"))
         self._tiles = ActiveTiles(store, params.depth_film, model.infiltration is not None)
-        self._after_step = parts_of(model, params, store, self._tiles, self._scheme(), self._edges)
+        scheme = self._scheme()
+        self._after_step = parts_of(model, params, store, self._tiles, scheme, self._edges)
         self._weirs = next((part for part in self._after_step if isinstance(part, Weirs)), None)
         self._breaches = next((part for part in self._after_step if isinstance(part, Breaches)), None)
         self._conduits = next((part for part in self._after_step if isinstance(part, Conduits)), None)
@@ -77,9 +78,8 @@ class ShallowWaterSolver:
         longest = [params.dt_max, params.cfl * model.dx / WAVE_FLOOR]
         self._dt_max = min([*longest, *(part.dt_max for part in self._after_step)])
         self._gauges = GaugeRecorder(params, store, self._dt_max)
-        weirs = next((part for part in self._after_step if isinstance(part, Weirs)), None)
-        self._sections = SectionRecorder(params, store, model.dx, self._dt_max, weirs)
-        self._engine = self._choose_engine()
+        self._sections = SectionRecorder(params, store, model.dx, self._dt_max, self._weirs)
+        self._engine = self._choose_engine(scheme)
         self._initial_volume = 0.0
         self._edits_volume = 0.0
         self.set_water(np.zeros(model.shape, np.float32))
@@ -109,18 +109,17 @@ class ShallowWaterSolver:
         scheme.nrows, scheme.ncols = self.model.shape
         return scheme
 
-    def _choose_engine(self) -> Engine:
+    def _choose_engine(self, scheme: Scheme) -> Engine:
         params = self.params
-        courant = params.cfl * self.model.dx
         parts = StepParts(
             store=self._store,
-            scheme=self._scheme(),
+            scheme=scheme,
             tiles=self._tiles,
             after_step=self._after_step,
             gauges=self._gauges,
             sections=self._sections,
             edges=self._edges,
-            courant=courant,
+            courant=params.cfl * self.model.dx,
             dt_max=self._dt_max,
             dt_min=params.dt_min,
         )
