@@ -11,7 +11,7 @@ from viewer.app.camera_work import CameraWork
 from viewer.app.shown_run import ShownRun
 from viewer.app.water_feed import WaterFeed
 from viewer.net import FrameKey
-from viewer.world import Heightfield, MapView, flood_extent, ground_in_view, relief_map
+from viewer.world import Camera, Heightfield, MapView, WorldFrame, flood_extent, ground_in_view, relief_map
 
 __all__ = ["MapMaker"]
 
@@ -30,6 +30,7 @@ class MapMaker:
         self._flood: npt.NDArray[np.bool_] = np.zeros((1, 1), bool)
         self._flood_made = -math.inf
         self._view: MapView | None = None
+        self._shows: tuple[Camera, WorldFrame, float] | None = None
 
     def map_view(
         self, shown: ShownRun, work: CameraWork, feed: WaterFeed, depth_shown: float, now: float
@@ -57,10 +58,13 @@ class MapMaker:
             if keys[nearer] != self._water:
                 self._water, self._flood_made = keys[nearer], now
                 self._flood = flood_extent((pair.second if nearer else pair.first).h, depth_shown)
-        made = self._make(shown, work)
-        if self._view is None or not _same(made, self._view):
-            self._view = made
-        return self._view
+        shows = (work.camera, work.frame, work.aspect)
+        view = self._view
+        has_both = view is not None and view.relief is self._relief and view.flood is self._flood
+        if view is None or not has_both or shows != self._shows:
+            self._shows = shows
+            self._view = view = self._make(shown, work)
+        return view
 
     def _make(self, shown: ShownRun, work: CameraWork) -> MapView:
         camera, frame = work.camera, work.frame
@@ -74,12 +78,3 @@ class MapMaker:
             target=target[:2],
             in_view=ground_in_view(camera, work.aspect, frame),
         )
-
-
-def _same(first: MapView, second: MapView) -> bool:
-    return (
-        first.relief is second.relief
-        and first.flood is second.flood
-        and (first.extent, first.eye, first.target, first.in_view)
-        == (second.extent, second.eye, second.target, second.in_view)
-    )

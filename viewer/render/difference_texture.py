@@ -28,7 +28,7 @@ class DifferenceTexture:
     """Follows the difference of the frame inputs; holds a single cell while there is none."""
 
     def __init__(self, ctx: moderngl.Context, shape: tuple[int, int]) -> None:
-        """Make the placeholder.
+        """Begin without a difference.
 
         Args:
             ctx: the OpenGL context.
