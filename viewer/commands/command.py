@@ -1,0 +1,92 @@
+"""The union of all commands: what `viewer.app` can carry out."""
+
+from __future__ import annotations
+
+from viewer.commands.camera import (
+    DragOrbit,
+    DragPan,
+    FlyTo,
+    GrabView,
+    HoldMove,
+    ReleaseMoves,
+    ResetView,
+    TopView,
+    Zoom,
+)
+from viewer.commands.edits import (
+    AddVertex,
+    BeginEdit,
+    CancelEdit,
+    ChangeEditSettings,
+    FinishEdit,
+    Redo,
+    Undo,
+)
+from viewer.commands.picture import (
+    MoveHover,
+    ProbeAt,
+    SavePicture,
+    SetOption,
+)
+from viewer.commands.playback import (
+    FollowLive,
+    Pause,
+    Play,
+    Seek,
+    SetSpeed,
+    TogglePlay,
+)
+from viewer.commands.runs import (
+    CompareWith,
+    PauseRun,
+    Recalculate,
+    ResumeRun,
+    SelectRun,
+    StartRun,
+    StopRun,
+)
+from viewer.errors import ViewerError
+
+__all__ = ["Command", "CommandError"]
+
+
+class CommandError(ViewerError):
+    """A command that cannot be made or carried out; the text says why in one sentence."""
+
+
+Command = (
+    Play
+    | Pause
+    | TogglePlay
+    | Seek
+    | SetSpeed
+    | FollowLive
+    | StartRun
+    | SelectRun
+    | CompareWith
+    | PauseRun
+    | ResumeRun
+    | StopRun
+    | Recalculate
+    | ChangeEditSettings
+    | BeginEdit
+    | AddVertex
+    | FinishEdit
+    | CancelEdit
+    | Undo
+    | Redo
+    | GrabView
+    | DragOrbit
+    | DragPan
+    | Zoom
+    | HoldMove
+    | ReleaseMoves
+    | FlyTo
+    | ResetView
+    | TopView
+    | MoveHover
+    | ProbeAt
+    | SetOption
+    | SavePicture
+)
+"""Any command."""

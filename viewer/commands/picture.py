@@ -1,0 +1,38 @@
+"""The picture: its options, the point under the pointer, writing it to a file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["MoveHover", "ProbeAt", "SavePicture", "SetOption"]
+
+
+@dataclass(frozen=True)
+class MoveHover:
+    """The pointer is over the ground point (x, y) [m], or over nothing; readout and rubber band follow."""
+
+    x: float | None
+    y: float | None
+
+
+@dataclass(frozen=True)
+class ProbeAt:
+    """Keep a depth record at the ground point (x, y) [m]."""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class SetOption:
+    """Set a view option (see `viewer.render.ViewOptions`) by name."""
+
+    name: str
+    value: bool | float | str
+
+
+@dataclass(frozen=True)
+class SavePicture:
+    """Write the picture now shown to `path` (PNG)."""
+
+    path: str

@@ -1,0 +1,57 @@
+"""Runs: starting, choosing, pausing, comparing, recalculating."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["CompareWith", "PauseRun", "Recalculate", "ResumeRun", "SelectRun", "StartRun", "StopRun"]
+
+
+@dataclass(frozen=True)
+class StartRun:
+    """Compute `case` from its start; None keeps the case's own duration and interval [s]."""
+
+    case: str
+    duration: float | None = None
+    output_interval: float | None = None
+    device: str = "auto"
+
+
+@dataclass(frozen=True)
+class SelectRun:
+    """Show another run of the service."""
+
+    run: str
+
+
+@dataclass(frozen=True)
+class CompareWith:
+    """Colour the picture by the difference to another run at the same time; None ends the comparison."""
+
+    run: str | None = None
+
+
+@dataclass(frozen=True)
+class PauseRun:
+    """Hold the computation of `run` (None: the run that is shown)."""
+
+    run: str | None = None
+
+
+@dataclass(frozen=True)
+class ResumeRun:
+    """Let the computation of `run` go on (None: the run that is shown)."""
+
+    run: str | None = None
+
+
+@dataclass(frozen=True)
+class StopRun:
+    """End the computation of `run` (None: the run that is shown); its frames stay."""
+
+    run: str | None = None
+
+
+@dataclass(frozen=True)
+class Recalculate:
+    """Compute anew with the working list of edits from the playback time on."""
