@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import msgspec
 import numpy as np
@@ -54,8 +54,30 @@ def all_finite(value: Any) -> bool:
 
 
 def plain(record: msgspec.Struct) -> Any:
-    """Maps, lists and numbers that msgpack knows, of a record whose numbers may be NumPy scalars."""
-    return msgspec.to_builtins(record, builtin_types=(bytes,), enc_hook=_plain_scalar)
+    """Maps, lists and numbers that msgpack knows, of a record whose numbers may be NumPy scalars.
+
+    Fields that a record leaves out at their default are not in its map.
+    """
+    built = msgspec.to_builtins(record, builtin_types=(bytes,), enc_hook=_plain_scalar)
+    _leave_out(record, built)
+    return built
+
+
+def _leave_out(value: Any, built: Any) -> None:
+    if isinstance(value, WireStruct):
+        for name in value.left_out:
+            if built[name] == msgspec.to_builtins(_default(type(value), name), builtin_types=(bytes,)):
+                del built[name]
+        for name in built.keys() & set(value.__struct_fields__):
+            _leave_out(getattr(value, name), built[name])
+    elif isinstance(value, tuple) and value and isinstance(value[0], WireStruct):
+        for item, item_built in zip(value, built, strict=True):
+            _leave_out(item, item_built)
+
+
+def _default(kind: type[WireStruct], name: str) -> Any:
+    defaults = kind.__struct_defaults__
+    return defaults[kind.__struct_fields__.index(name) - len(kind.__struct_fields__)]
 
 
 def _plain_scalar(value: Any) -> Any:
@@ -65,7 +87,14 @@ def _plain_scalar(value: Any) -> Any:
 
 
 class WireStruct(msgspec.Struct, frozen=True):
-    """A frozen record that travels in a message; its numbers are finite."""
+    """A frozen record that travels in a message; its numbers are finite.
+
+    Attributes:
+        left_out: fields that do not travel while they have their default: what came after the first version,
+            so that the bytes of a record that does without it never change.
+    """
+
+    left_out: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         """Refuse NaN and infinities, which msgpack carries as any other number.

@@ -1,4 +1,5 @@
 import math
+from typing import ClassVar
 
 import msgspec
 import numpy as np
@@ -44,3 +45,32 @@ def test_numpy_scalars_become_plain_numbers() -> None:
 def test_other_objects_are_refused() -> None:
     with pytest.raises(TypeError, match="complex"):
         plain(Probe(1j))  # type: ignore[arg-type]
+
+
+class Newer(WireStruct, frozen=True):
+    left_out: ClassVar[tuple[str, ...]] = ("label", "cells")
+    value: float
+    label: str = ""
+    cells: tuple[int, ...] = ()
+    plain: bool = False
+
+
+class Holder(WireStruct, frozen=True):
+    one: Newer
+    many: tuple[Newer, ...] = ()
+
+
+def test_a_field_that_came_later_is_left_out_while_it_has_its_default() -> None:
+    assert plain(Newer(1.0)) == {"value": 1.0, "plain": False}
+    assert plain(Newer(1.0, "a")) == {"value": 1.0, "label": "a", "plain": False}
+    assert list(plain(Newer(1.0, "a", (2,)))) == ["value", "label", "cells", "plain"]
+
+
+def test_later_fields_are_left_out_of_records_within_records() -> None:
+    built = plain(Holder(Newer(1.0), (Newer(2.0), Newer(3.0, "b"))))
+    assert built["one"] == {"value": 1.0, "plain": False}
+    assert [sorted(each) for each in built["many"]] == [["plain", "value"], ["label", "plain", "value"]]
+
+
+def test_a_record_without_its_later_fields_is_read_with_the_defaults() -> None:
+    assert msgspec.convert(plain(Newer(1.0)), Newer) == Newer(1.0)
