@@ -53,7 +53,7 @@ class RoomRules:
 
 
 class RunCommands(Protocol):
-    """What the housekeeper asks of the registry."""
+    """What the housekeeper asks of the control of runs."""
 
     async def resume(self, name: str) -> None:
         """Go on with a run."""

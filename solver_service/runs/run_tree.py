@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import secrets
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
@@ -157,6 +158,11 @@ class RunTree:
     def _leg(self, name: str) -> tuple[Leg, str | None]:
         record = self.get(name).record
         return Leg(name, record.branch_index, record.bed_revision, record.bed_edits), record.parent
+
+
+def new_run_id() -> str:
+    """An id that no run has had."""
+    return f"r{secrets.token_hex(6)}"
 
 
 def replayed_log(events: Iterable[EditEvent]) -> EditLog:

@@ -130,7 +130,7 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore) -> FastAPI
     @app.post("/v1/runs", dependencies=[needs(Scope.CONTROLLER)], status_code=201)
     async def start_run(body: RunRequest) -> RunCreated:
         """Start a run."""
-        run = await registry.start_run(
+        run = await registry.control.start(
             body.case, body.duration, body.output_interval, body.device, body.paused
         )
         return RunCreated(run=run.run)

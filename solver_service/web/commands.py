@@ -94,28 +94,28 @@ async def carry_out(command: Command, client: Client) -> None:
         case ListRuns():
             client.tell(RunList(command.id, registry.infos()[:LISTED]))
         case StartRun():
-            run = await registry.start_run(
+            run = await registry.control.start(
                 command.case, command.duration, command.output_interval, command.device, command.paused
             )
             registry.controllers.take(run.run, client.identity, force=True)
             client.tell(Ack(command.id, {"run": run.run}))
         case PauseRun():
-            await registry.pause(command.run)
+            await registry.control.pause(command.run)
             client.tell(Ack(command.id))
         case ResumeRun():
-            await registry.resume(command.run)
+            await registry.control.resume(command.run)
             client.tell(Ack(command.id))
         case StopRun():
-            await registry.stop(command.run)
+            await registry.control.stop(command.run)
             client.tell(Ack(command.id))
         case DeleteRun():
-            await registry.delete(command.run)
+            await registry.control.delete(command.run)
             client.tell(Ack(command.id))
         case RenameRun():
-            await registry.rename(command.run, command.label)
+            await registry.control.rename(command.run, command.label)
             client.tell(Ack(command.id))
         case PinRun() | UnpinRun():
-            await registry.pin(command.run, isinstance(command, PinRun))
+            await registry.control.pin(command.run, isinstance(command, PinRun))
             client.tell(Ack(command.id))
         case TakeControl():
             registry.tree.get(command.run)
@@ -146,7 +146,7 @@ async def carry_out(command: Command, client: Client) -> None:
             client.tell(Ack(command.id, {"revision": await registry.edits.redo(command.run)}))
         case Recalculate():
             watched = client.feed.run
-            child = await registry.recalculate(
+            child = await registry.branching.recalculate(
                 command.run, command.index, command.revision, command.keep_parent
             )
             registry.controllers.take(child.run, client.identity, force=True)

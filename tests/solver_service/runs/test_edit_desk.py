@@ -7,7 +7,7 @@ from tests.solver_service.runs.conftest import Service
 
 def test_a_change_counts_once_it_is_stored_and_a_refused_one_changes_nothing(service: Service) -> None:
     registry = service.registry
-    run = service.call(registry.start_run("dam-break", paused=True))
+    run = service.call(registry.control.start("dam-break", paused=True))
     assert service.call(registry.edits.append(run.run, levee("a"))) == 1
     with pytest.raises(EditError):
         service.call(registry.edits.append(run.run, levee("a")))
@@ -22,4 +22,4 @@ def test_a_change_counts_once_it_is_stored_and_a_refused_one_changes_nothing(ser
         (3, ["a"], True, False),
     ]
     assert registry.edits.changed(run.run) == told[-1]
-    service.call(registry.stop(run.run))
+    service.call(registry.control.stop(run.run))

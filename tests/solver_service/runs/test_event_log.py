@@ -16,14 +16,14 @@ from tests.solver_service.runs.conftest import Service
 def log(service: Service) -> EventLog:
     """The log of a run that branched twice, with edits, pauses and a killed worker in its past."""
     registry = service.registry
-    root = service.call(registry.start_run("dam-break", 200.0))
+    root = service.call(registry.control.start("dam-break", 200.0))
     service.call(registry.edits.append(root.run, levee("a")))
     service.wait(lambda: root.frame_count > 8)
-    child = service.call(registry.recalculate(root.run, 6, 1))
+    child = service.call(registry.branching.recalculate(root.run, 6, 1))
     service.wait(lambda: child.frame_count > 10)
     service.call(registry.edits.undo(child.run))
     service.call(registry.edits.append(child.run, levee("b", y=500.0)))
-    run = service.call(registry.recalculate(child.run, 9, 3))
+    run = service.call(registry.branching.recalculate(child.run, 9, 3))
     service.wait(lambda: run.frame_count > 12)
     if run.worker is not None:
         run.worker.kill()

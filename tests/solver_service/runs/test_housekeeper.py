@@ -25,7 +25,7 @@ def housekeeper(service: Service, **rules: int) -> Housekeeper:
     epoch = database._db.execute("SELECT value FROM service").fetchone()[0]
     database.close()
     return Housekeeper(
-        registry,
+        registry.control,
         registry.tree,
         registry._store,
         registry._folder,
@@ -43,7 +43,7 @@ def used(service: Service) -> int:
 
 
 def finished(service: Service, duration: float = 50.0) -> Run:
-    run = service.call(service.registry.start_run("dam-break", duration))
+    run = service.call(service.registry.control.start("dam-break", duration))
     service.wait_for_status(run, RunStatus.FINISHED)
     return run
 
@@ -51,8 +51,8 @@ def finished(service: Service, duration: float = 50.0) -> Run:
 def test_a_budget_lets_old_runs_go_and_keeps_pinned_and_living_ones(service: Service) -> None:
     registry = service.registry
     pinned, old, new = finished(service), finished(service), finished(service)
-    service.call(registry.pin(pinned.run))
-    paused = service.call(registry.start_run("dam-break", 1e4, paused=True))
+    service.call(registry.control.pin(pinned.run))
+    paused = service.call(registry.control.start("dam-break", 1e4, paused=True))
     service.wait(lambda: paused.status is RunStatus.PAUSED and paused.frame_count > 0)
     service.call(registry.supervisor.settle(old))
     frames = sum(frame.size for run in (pinned, old, new) for frame in run.frames)
@@ -69,7 +69,7 @@ def test_a_budget_lets_old_runs_go_and_keeps_pinned_and_living_ones(service: Ser
 
 
 def test_when_nothing_may_go_runs_pause_in_words_and_go_on_when_there_is_room(service: Service) -> None:
-    run = service.call(service.registry.start_run("dam-break", 1e4))
+    run = service.call(service.registry.control.start("dam-break", 1e4))
     service.wait(lambda: run.frame_count > 3)
     service.call(housekeeper(service, store_bytes=1).look())
     assert run.status is RunStatus.PAUSED
@@ -80,26 +80,26 @@ def test_when_nothing_may_go_runs_pause_in_words_and_go_on_when_there_is_room(se
     assert run.status is RunStatus.PAUSED
     service.call(housekeeper(service, store_bytes=1 << 40).look())
     service.wait(lambda: run.frame_count > stored + 3)
-    service.call(service.registry.stop(run.run))
+    service.call(service.registry.control.stop(run.run))
 
 
 def test_a_run_that_a_person_paused_does_not_go_on_by_itself(service: Service) -> None:
-    run = service.call(service.registry.start_run("dam-break", 1e4))
+    run = service.call(service.registry.control.start("dam-break", 1e4))
     service.wait(lambda: run.status is RunStatus.RUNNING)
-    service.call(service.registry.pause(run.run))
+    service.call(service.registry.control.pause(run.run))
     service.call(housekeeper(service).look())
     assert run.status is RunStatus.PAUSED
 
 
 def test_the_segments_of_a_run_that_was_paused_often_are_moved_together(service: Service) -> None:
     registry = service.registry
-    run = service.call(registry.start_run("dam-break", 200.0, paused=True))
+    run = service.call(registry.control.start("dam-break", 200.0, paused=True))
     service.wait(lambda: run.status is RunStatus.PAUSED and run.frame_count > 0)
-    other = service.call(registry.start_run("dam-break", 1e4, paused=True))
+    other = service.call(registry.control.start("dam-break", 1e4, paused=True))
     assert run.worker is not None
     run.worker.kill()
     service.wait(lambda: run.worker is None)
-    service.call(registry.resume(run.run))
+    service.call(registry.control.resume(run.run))
     service.wait_for_status(run, RunStatus.FINISHED)
     assert len({frame.segment for frame in run.frames}) == 2
     before = [service.call(registry.read_frame(frame)) for frame in run.frames]

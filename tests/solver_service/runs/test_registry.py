@@ -67,7 +67,7 @@ def assert_same_to_the_bit(service: Service, run: Run, truth: Run) -> None:
 @pytest.fixture(scope="module")
 def truth(service: Service) -> Run:
     """A run that nothing disturbed."""
-    run = service.call(service.registry.start_run("dam-break", DURATION))
+    run = service.call(service.registry.control.start("dam-break", DURATION))
     service.wait_for_status(run, RunStatus.FINISHED)
     return run
 
@@ -80,8 +80,8 @@ def test_a_run_goes_from_starting_to_finished_with_every_frame(service: Service,
 def test_a_run_whose_worker_is_killed_goes_on_by_itself_in_words_with_the_very_bytes_of_another(
     service: Service, truth: Run
 ) -> None:
-    neighbour = service.call(service.registry.start_run("dam-break", DURATION))
-    run = service.call(service.registry.start_run("dam-break", DURATION))
+    neighbour = service.call(service.registry.control.start("dam-break", DURATION))
+    run = service.call(service.registry.control.start("dam-break", DURATION))
     service.wait(lambda: run.frame_count > 5)
     assert run.status is RunStatus.RUNNING
     assert run.worker is not None
@@ -97,13 +97,13 @@ def test_a_run_whose_worker_is_killed_goes_on_by_itself_in_words_with_the_very_b
 
 
 def test_pausing_again_and_again_changes_nothing(service: Service, truth: Run) -> None:
-    run = service.call(service.registry.start_run("dam-break", DURATION))
+    run = service.call(service.registry.control.start("dam-break", DURATION))
     for count in (2, 5, 9):
         service.wait(lambda count=count: run.frame_count > count)
         if run.status is RunStatus.RUNNING:
-            service.call(service.registry.pause(run.run))
+            service.call(service.registry.control.pause(run.run))
             assert run.status is RunStatus.PAUSED
-            service.call(service.registry.resume(run.run))
+            service.call(service.registry.control.resume(run.run))
     assert_same_to_the_bit(service, run, truth)
 
 
@@ -111,13 +111,13 @@ def test_a_branch_that_crosses_two_branch_points_from_time_zero_equals_the_warm_
     service: Service,
 ) -> None:
     registry = service.registry
-    root = service.call(registry.start_run("dam-break", DURATION))
+    root = service.call(registry.control.start("dam-break", DURATION))
     service.wait_for_status(root, RunStatus.FINISHED)
     service.call(registry.edits.append(root.run, levee("a", y=350.0)))
-    child = service.call(registry.recalculate(root.run, 6, 1))
+    child = service.call(registry.branching.recalculate(root.run, 6, 1))
     service.wait(lambda: child.frame_count > 12)
     service.call(registry.edits.append(child.run, levee("b", y=500.0)))
-    warm = service.call(registry.recalculate(child.run, 11, 2))
+    warm = service.call(registry.branching.recalculate(child.run, 11, 2))
     service.wait_for_status(warm, RunStatus.FINISHED)
     final_state(service, warm)
     folder = DataFolder(registry._folder.root)
@@ -131,7 +131,7 @@ def test_a_branch_that_crosses_two_branch_points_from_time_zero_equals_the_warm_
     for worker in workers:
         worker.kill()
     wait_until(lambda: all(worker.is_dead for worker in workers))
-    cold = service.call(registry.recalculate(warm.run, 11, 2))
+    cold = service.call(registry.branching.recalculate(warm.run, 11, 2))
     service.wait_for_status(cold, RunStatus.FINISHED)
     assert cold.record.parent == child.run
     assert any("is damaged" in text or "cannot be read" in text for text in service.notices(cold.run))
@@ -143,7 +143,7 @@ def test_a_run_whose_disk_is_full_pauses_in_words_and_goes_on_by_itself_when_the
     service: Service, truth: Run
 ) -> None:
     resource = pytest.importorskip("resource")
-    run = service.call(service.registry.start_run("dam-break", DURATION, paused=True))
+    run = service.call(service.registry.control.start("dam-break", DURATION, paused=True))
     service.wait(lambda: run.status is RunStatus.PAUSED and run.frame_count == 1)
     assert run.worker is not None
     assert run.worker.pid is not None
@@ -151,7 +151,7 @@ def test_a_run_whose_disk_is_full_pauses_in_words_and_goes_on_by_itself_when_the
     segment = service.registry._folder.frames(run.run) / run.frames[0].segment
     limit = segment.stat().st_size + 10_000
     resource.prlimit(run.worker.pid, resource.RLIMIT_FSIZE, (limit, unlimited[1]))
-    service.call(service.registry.resume(run.run))
+    service.call(service.registry.control.resume(run.run))
     service.wait(lambda: bool(service.notices(run.run)))
     told = service.notices(run.run)[0]
     assert told.startswith("paused: ")
@@ -168,7 +168,7 @@ def test_a_case_that_is_not_offered_is_refused_even_if_it_is_a_path_that_exists(
 ) -> None:
     secret = write_dam_break(tmp_path / "secret", name="secret")
     with pytest.raises(RunError, match="there is no case"):
-        service.call(service.registry.start_run(str(secret)))
+        service.call(service.registry.control.start(str(secret)))
 
 
 def test_a_second_registry_on_the_same_folder_is_refused(service: Service) -> None:

@@ -7,7 +7,7 @@ from tests.solver_service.runs.conftest import Service
 
 
 def test_progress_and_the_water_budget_are_told_while_a_run_computes(service: Service) -> None:
-    run = service.call(service.registry.start_run("dam-break", 300.0))
+    run = service.call(service.registry.control.start("dam-break", 300.0))
     service.wait_for_status(run, RunStatus.FINISHED)
     service.wait(lambda: any(isinstance(m, WaterBudget) and m.time == 300.0 for m in service.heard))
     progress = [m for m in service.heard if isinstance(m, Progress) and m.run == run.run]

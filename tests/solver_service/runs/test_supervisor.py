@@ -1,4 +1,3 @@
-import contextlib
 import os
 import re
 import signal
@@ -9,10 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from protocol import RunRemoved
-from solver_service.errors import RunError
 from solver_service.runs import Run, RunStatus
-from tests.end_to_end.dam_break import levee, write_dam_break
+from tests.end_to_end.dam_break import write_dam_break
 from tests.solver_service.runs.conftest import Service
 
 DURATION = 400.0
@@ -40,7 +37,7 @@ def service(tmp_path_factory: pytest.TempPathFactory, case: str) -> Iterator[Ser
 
 
 def start(service: Service, paused: bool = False) -> Run:
-    run = service.call(service.registry.start_run("dam-break", DURATION, paused=paused))
+    run = service.call(service.registry.control.start("dam-break", DURATION, paused=paused))
     service.wait(lambda: run.frame_count > 0)
     return run
 
@@ -61,7 +58,7 @@ def delay_of_a_death(service: Service) -> float:
     kill_worker(run)
     service.wait(lambda: bool(service.notices(run.run)))
     delay = time.perf_counter() - begun
-    service.call(service.registry.stop(run.run))
+    service.call(service.registry.control.stop(run.run))
     return delay
 
 
@@ -77,13 +74,13 @@ def test_a_run_that_dies_too_often_fails_in_words_and_a_person_can_resume_it(ser
     ]
     assert run.status is RunStatus.FAILED
     assert "killed (SIGKILL)" in run.reason
-    service.call(service.registry.resume(run.run))
+    service.call(service.registry.control.resume(run.run))
     service.wait_for_status(run, RunStatus.FINISHED)
     assert [frame.index for frame in run.frames] == list(range(81))
 
 
 def test_a_run_that_blows_up_fails_with_time_and_cell_and_is_not_tried_again(service: Service) -> None:
-    run = service.call(service.registry.start_run("wild"))
+    run = service.call(service.registry.control.start("wild"))
     service.wait_for_status(run, RunStatus.FAILED)
     service.wait(lambda: bool(service.notices(run.run)))
     assert "The run stopped at" in run.reason
@@ -103,7 +100,7 @@ def test_a_worker_that_gets_no_memory_ends_in_words_and_another_goes_on_while_ne
     assert run.worker.pid is not None
     size = int(Path(f"/proc/{run.worker.pid}/statm").read_text().split()[0]) * resource.getpagesize()
     resource.prlimit(run.worker.pid, resource.RLIMIT_AS, (size, size))
-    service.call(service.registry.resume(run.run))
+    service.call(service.registry.control.resume(run.run))
     service.wait(lambda: bool(service.notices(run.run)))
     # Python raises MemoryError; native code that gets nothing mostly crashes
     assert re.search(r"ran out of memory|crashed \(SIG(SEGV|ABRT)\)", service.notices(run.run)[0])
@@ -115,72 +112,3 @@ def test_a_worker_that_gets_no_memory_ends_in_words_and_another_goes_on_while_ne
         assert (
             ours_packed.partition(run.run.encode())[2] == theirs_packed.partition(neighbour.run.encode())[2]
         )
-
-
-def test_a_child_that_is_recalculated_before_its_first_frame_still_gets_it(service: Service) -> None:
-    registry = service.registry
-    for _ in range(3):
-        root = start(service)
-        service.wait(lambda root=root: root.frame_count > 6)
-        service.call(registry.edits.append(root.run, levee("a")))
-        child = service.call(registry.recalculate(root.run, 5, 1))
-        service.call(registry.edits.append(child.run, levee("b", y=500.0)))
-        grandchild = service.call(registry.recalculate(child.run, 5, 2))
-        service.wait(lambda grandchild=grandchild: grandchild.frame_count > 5)
-        service.wait(lambda child=child: child.frame_count > 5)
-        assert child.status is RunStatus.PAUSED
-        assert grandchild.record.parent == root.run
-        for run in (grandchild, child, root):
-            with contextlib.suppress(RunError):  # finished meanwhile
-                service.call(registry.stop(run.run))
-
-
-def test_a_parent_resumed_at_once_on_another_worker_has_every_frame_once(service: Service) -> None:
-    registry = service.registry
-    for _ in range(3):
-        root = start(service)
-        service.wait(lambda root=root: root.frame_count > 8)
-        child = service.call(registry.recalculate(root.run, 3, 0))
-        with contextlib.suppress(RunError):  # finished already
-            service.call(registry.resume(root.run))
-        for run in (root, child):
-            service.wait_for_status(run, RunStatus.FINISHED)
-        assert [frame.index for frame in root.frames] == list(range(81))
-        assert [frame.index for frame in child.frames] == list(range(3, 81))
-
-
-def test_a_run_is_deleted_with_its_files_when_nothing_needs_it(service: Service) -> None:
-    registry = service.registry
-    root = start(service)
-    service.wait(lambda: root.frame_count > 4)
-    with pytest.raises(RunError, match="cannot be deleted; it can while it is"):
-        service.call(registry.delete(root.run))
-    child = service.call(registry.recalculate(root.run, 2, 0))
-    service.wait(lambda: child.frame_count > 2)
-    with pytest.raises(RunError, match=f"holds the past of {child.run}"):
-        service.call(registry.delete(root.run))
-    service.call(registry.stop(child.run))
-    service.call(registry.pin(child.run))
-    with pytest.raises(RunError, match="is pinned"):
-        service.call(registry.delete(child.run))
-    service.call(registry.pin(child.run, False))
-    folder = registry._folder
-    for run in (child, root):
-        assert folder.frames(run.run).is_dir()
-        service.call(registry.delete(run.run))
-        assert run.run not in registry.tree
-        assert not folder.frames(run.run).exists()
-        assert not folder.checkpoints(run.run).exists()
-        assert RunRemoved(run.run) in service.heard
-    with pytest.raises(RunError, match="there is no run"):
-        service.call(registry.delete(root.run))
-
-
-def test_a_label_and_a_pin_are_told_and_kept(service: Service) -> None:
-    registry = service.registry
-    run = start(service)
-    service.call(registry.rename(run.run, "with the levee"))
-    service.call(registry.pin(run.run))
-    info = registry.tree.info(run)
-    assert (info.label, info.pinned) == ("with the levee", True)
-    service.call(registry.stop(run.run))

@@ -1,0 +1,51 @@
+import pytest
+
+from protocol import RunRemoved
+from solver_service.errors import RunError
+from solver_service.runs import Run
+from tests.solver_service.runs.conftest import Service
+
+DURATION = 400.0
+
+
+def start(service: Service) -> Run:
+    run = service.call(service.registry.control.start("dam-break", DURATION))
+    service.wait(lambda: run.frame_count > 0)
+    return run
+
+
+def test_a_run_is_deleted_with_its_files_when_nothing_needs_it(service: Service) -> None:
+    registry = service.registry
+    root = start(service)
+    service.wait(lambda: root.frame_count > 4)
+    with pytest.raises(RunError, match="cannot be deleted; it can while it is"):
+        service.call(registry.control.delete(root.run))
+    child = service.call(registry.branching.recalculate(root.run, 2, 0))
+    service.wait(lambda: child.frame_count > 2)
+    with pytest.raises(RunError, match=f"holds the past of {child.run}"):
+        service.call(registry.control.delete(root.run))
+    service.call(registry.control.stop(child.run))
+    service.call(registry.control.pin(child.run))
+    with pytest.raises(RunError, match="is pinned"):
+        service.call(registry.control.delete(child.run))
+    service.call(registry.control.pin(child.run, False))
+    folder = registry._folder
+    for run in (child, root):
+        assert folder.frames(run.run).is_dir()
+        service.call(registry.control.delete(run.run))
+        assert run.run not in registry.tree
+        assert not folder.frames(run.run).exists()
+        assert not folder.checkpoints(run.run).exists()
+        assert RunRemoved(run.run) in service.heard
+    with pytest.raises(RunError, match="there is no run"):
+        service.call(registry.control.delete(root.run))
+
+
+def test_a_label_and_a_pin_are_told_and_kept(service: Service) -> None:
+    registry = service.registry
+    run = start(service)
+    service.call(registry.control.rename(run.run, "with the levee"))
+    service.call(registry.control.pin(run.run))
+    info = registry.tree.info(run)
+    assert (info.label, info.pinned) == ("with the levee", True)
+    service.call(registry.control.stop(run.run))
