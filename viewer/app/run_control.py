@@ -10,7 +10,16 @@ from viewer.app.editing import Editing
 from viewer.app.recalculation import Recalculation
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
-from viewer.commands import CommandError, StartRun
+from viewer.commands import (
+    Command,
+    CommandError,
+    PauseRun,
+    Recalculate,
+    ResumeRun,
+    SelectRun,
+    StartRun,
+    StopRun,
+)
 from viewer.net import ConnectionThread, FrameLoader
 from viewer.world import PlaybackClock
 
@@ -33,6 +42,7 @@ class RunControl:
         shown: the run on the picture, None before the first terrain has come.
         recalculated: the newest recalculation asked for.
         message: the newest sentence for the user.
+        resuming: called before a run is taken up again.
         is_stale: whether anything changed since somebody last looked; set True here, False by who looks.
     """
 
@@ -50,6 +60,7 @@ class RunControl:
         self.shown: ShownRun | None = None
         self.recalculated: Recalculation | None = None
         self.message = ""
+        self.resuming: Callable[[], None] = lambda: None
         self.is_stale = True
         self._loader = loader
         self._clock = clock
@@ -59,6 +70,30 @@ class RunControl:
         self._recalculate_wanted = False
 
     # --- what the user asks for -----------------------------------------------------------------------
+
+    def carry_out(self, command: Command) -> bool:
+        """Carry out a command about runs; return False when it is none.
+
+        Raises:
+            CommandError: it makes no sense now.
+        """
+        match command:
+            case StartRun():
+                self.start_run(command)
+            case SelectRun(run):
+                self.select_run(run)
+            case PauseRun(run):
+                self.desk.pause_run(run or self.require_run().run)
+            case ResumeRun(run):
+                self.resuming()
+                self.desk.resume_run(run or self.require_run().run)
+            case StopRun(run):
+                self.desk.stop_run(run or self.require_run().run)
+            case Recalculate():
+                self.recalculate()
+            case _:
+                return False
+        return True
 
     def start_run(self, command: StartRun) -> None:
         """Ask for a new run; it is shown and followed live as soon as it exists."""

@@ -16,11 +16,13 @@ from viewer.app.comparison import Comparison
 from viewer.app.levee_watch import LeveeWatch
 from viewer.app.map_maker import MapMaker
 from viewer.app.picture_text import edit_overlay, hud_text, loss_notice
+from viewer.app.playback import Playback
+from viewer.app.pointing import Pointing
 from viewer.app.recalculation import Recalculation
 from viewer.app.run_control import RunControl
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
-from viewer.app.status_report import depth_record, point_readout, program_status, run_status
+from viewer.app.status_report import program_status, run_status
 from viewer.app.view_options import changed_options
 from viewer.app.water_feed import WaterFeed
 from viewer.commands import (
@@ -38,8 +40,6 @@ from viewer.commands import (
     Redo,
     ResumeRun,
     SavePicture,
-    Seek,
-    SelectRun,
     SetOption,
     SetSpeed,
     StartRun,
@@ -55,8 +55,6 @@ from viewer.world import Heightfield, MapView, PlaybackClock
 
 __all__ = ["ViewerApp"]
 
-PLAYBACK_LENGTH_S = 60.0
-"""Wall time in which a whole run plays at the speed chosen first [s]."""
 WITHOUT_PICTURE = (
     FollowLive,
     MoveHover,
@@ -95,12 +93,12 @@ class ViewerApp:
         self.loader = loader
         self.clock = PlaybackClock()
         self.control = RunControl(connection, loader, self.clock, self._new_terrain, autostart)
+        self.playback = Playback(self.clock, self.control.require_run)
         self.feed = WaterFeed(loader, self.desk.book, self.control.request_frame)
+        self.pointing = Pointing(loader, self.feed)
         self.options = RenderOptions()
         self.camera_work: CameraWork | None = None
         self._picture_path: str | None = None
-        self._hover_at: tuple[float, float] | None = None
-        self._probe_at: tuple[float, float] | None = None
         self._last_advance: float | None = None
         self._drawn_text: HudText | None = None
         self._text_checked = -math.inf
@@ -111,6 +109,7 @@ class ViewerApp:
         self._map_maker = MapMaker()
         self._levee_watch = LeveeWatch()
         self.comparison = Comparison(self.desk, loader, self.feed, self.control.resubscribe)
+        self.control.resuming = self.comparison.return_stream
 
     @property
     def desk(self) -> ServiceDesk:
@@ -149,55 +148,29 @@ class ViewerApp:
             CommandError: it makes no sense now; nothing was changed.
         """
         self._picture_stale |= not isinstance(command, WITHOUT_PICTURE)
+        if (
+            self.playback.carry_out(command)
+            or self.control.carry_out(command)
+            or self.control.editing.carry_out(command, self.shown)
+        ):
+            return
         match command:
-            case Play():
-                self.clock.play()
-            case Pause():
-                self.clock.pause()
-            case TogglePlay():
-                self.clock.pause() if self.clock.is_playing else self.clock.play()
-            case Seek(time):
-                if not math.isfinite(time):
-                    raise CommandError(f"Seek.time = {time!r} is not allowed; it must be finite")
-                self.clock.seek(min(time, self.control.require_run().computed_until))
-            case SetSpeed(factor):
-                if not (math.isfinite(factor) and factor > 0.0):
-                    raise CommandError(f"SetSpeed.factor = {factor!r} is not allowed; it must be above 0")
-                self.clock.set_speed(factor)
-            case FollowLive(on):
-                self.clock.follow_live() if on else self.clock.pause()
-            case StartRun():
-                self.control.start_run(command)
-            case SelectRun(run):
-                self.control.select_run(run)
             case CompareWith(run):
                 self.comparison.begin(self.control.require_run(), run)
-            case PauseRun(run):
-                self.desk.pause_run(run or self.control.require_run().run)
-            case ResumeRun(run):
-                self.comparison.return_stream()
-                self.desk.resume_run(run or self.control.require_run().run)
-            case StopRun(run):
-                self.desk.stop_run(run or self.control.require_run().run)
             case SetOption(name, value):
                 self.options = changed_options(self.options, name, value)
                 if self.camera_work is not None:
                     self.camera_work.set_exaggeration(self.options.exaggeration)
-            case ProbeAt(x, y):
-                self._probe_at = (x, y)
-                self._trace_probe()
-            case MoveHover(x, y):
-                self._hover_at = None if x is None or y is None else (x, y)
+            case ProbeAt():
+                self.pointing.take(command, self.shown)
+            case MoveHover():
+                self.pointing.take(command, self.shown)
                 self._picture_stale |= self.control.editing.drawing.is_on
-                self.control.editing.hover(self._hover_at, self.shown)
+                self.control.editing.hover(self.pointing.hover_at, self.shown)
             case SavePicture(path):
                 self._picture_path = path
-            case Recalculate():
-                self.control.recalculate()
             case _:
-                if not self.control.editing.carry_out(command, self.shown) and (
-                    self.camera_work is None or not self.camera_work.carry_out(command)
-                ):
+                if self.camera_work is None or not self.camera_work.carry_out(command):
                     raise CommandError(f"{type(command).__name__} is not possible before a terrain is shown")
 
     # --- time ---------------------------------------------------------------------------------------
@@ -221,7 +194,7 @@ class ViewerApp:
         if shown is not None and self.camera_work is not None:
             changed |= self.camera_work.advance(wall_dt)
             changed |= shown.refresh_ground()
-            changed |= self._advance_clock(shown, wall_dt)
+            changed |= self.playback.advance(shown, wall_dt)
             if not self.control.is_held:
                 changed |= self.feed.advance(shown, self.clock.time)
             changed |= self.comparison.advance(shown)
@@ -236,7 +209,7 @@ class ViewerApp:
         if self._status_stale and now - self._status_made >= STATUS_PERIOD_S:
             self._status_stale = False
             self._status_made = now
-            self._trace_probe()
+            self.pointing.trace(self.shown)
             made = self._make_status()
             if made != self._status:
                 self._status = made
@@ -349,34 +322,13 @@ class ViewerApp:
         aspect = 16.0 / 9.0 if self.camera_work is None else self.camera_work.aspect
         self.camera_work = CameraWork(shown.heightfield, self.options.exaggeration, aspect)
         self.feed.forget()
-        self.clock.set_speed(max(1.0, shown.info.duration / PLAYBACK_LENGTH_S))
-
-    def _advance_clock(self, shown: ShownRun, wall_dt: float) -> bool:
-        before = self.clock.time
-        at_hand = max(shown.timeline.last_time, shown.branch_index * shown.info.output_interval)
-        last = at_hand if before <= at_hand and self.clock.is_playing else shown.computed_until
-        return (
-            self.clock.advance(wall_dt, 0.0, max(last, before if not self.clock.is_playing else last))
-            != before
-        )
+        self.playback.fit_speed(shown.info.duration)
 
     def _make_status(self) -> ViewStatus:
         status = program_status(self.desk, self.clock, self.control.editing.drawing, self.message)
         if self.shown is None:
             return status
-        return dataclasses.replace(
-            run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch),
-            compared_run=None if self.comparison.other is None else self.comparison.other.run,
-            hover=point_readout(self.shown, self.feed, self._hover_at),
-            probe=point_readout(self.shown, self.feed, self._probe_at),
-            depth_record=depth_record(self.shown, self.loader) if self._probe_at is not None else ((), ()),
-        )
-
-    def _trace_probe(self) -> None:
-        """Let the depth at the probed point be read from every frame at hand."""
-        shown = self.shown
-        if shown is None or self._probe_at is None:
-            return
-        row, col = (math.floor(at + 0.5) for at in shown.grid.to_cell(*self._probe_at))
-        if 0 <= row < shown.grid.nrows and 0 <= col < shown.grid.ncols:
-            self.loader.trace(row, col, [shown.frame_key(index) for index in shown.timeline.indices])
+        status = run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch)
+        other = self.comparison.other
+        compared = dataclasses.replace(status, compared_run=None if other is None else other.run)
+        return self.pointing.report(compared, self.shown)
