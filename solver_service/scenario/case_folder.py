@@ -7,24 +7,18 @@ folder, with limits, and nothing in it may point outside.
 from __future__ import annotations
 
 import shutil
-import stat
 import tempfile
-import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from solver_service.errors import CaseError
-from solver_service.terrain import BROKEN_ARCHIVE
+from solver_service.scenario.case_archive import unpack
 
 CASE_FILE = "case.toml"
 ARCHIVE_SUFFIX = ".fevcase"
 MAX_CASE_FILE_BYTES = 4 << 20
-MAX_ARCHIVE_FILES = 10_000
-MAX_ARCHIVE_BYTES = 4 << 30
-MAX_RATIO = 1000
-"""Largest size of a file in units of its packed size."""
 
 
 @dataclass(frozen=True)
@@ -107,57 +101,27 @@ def open_case(path: Path) -> Iterator[CaseFolder]:
         )
     unpacked = Path(tempfile.mkdtemp(prefix="fevcase-"))
     try:
-        _unpack(path, unpacked)
-        inner = unpacked
-        below = [entry for entry in unpacked.iterdir()]
-        if not (inner / CASE_FILE).is_file() and len(below) == 1 and below[0].is_dir():
-            inner = below[0]
-        if not (inner / CASE_FILE).is_file():
-            raise CaseError(f"{path}: holds no {CASE_FILE}.")
+        unpack(path, unpacked)
+        inner = inner_folder(unpacked, path.name)
         yield CaseFolder(inner / CASE_FILE, inner, temporary=True)
     finally:
         shutil.rmtree(unpacked, ignore_errors=True)
 
 
-def _unpack(archive_path: Path, target: Path) -> None:
-    try:
-        with zipfile.ZipFile(archive_path) as archive:
-            entries = archive.infolist()
-            if len(entries) > MAX_ARCHIVE_FILES:
-                raise CaseError(
-                    f"{archive_path}: holds {len(entries)} files; up to {MAX_ARCHIVE_FILES} are allowed."
-                )
-            total = sum(entry.file_size for entry in entries)
-            if total > MAX_ARCHIVE_BYTES:
-                raise CaseError(
-                    f"{archive_path}: unpacks to {total} bytes; up to {MAX_ARCHIVE_BYTES} are allowed."
-                )
-            for entry in entries:
-                _unpack_entry(archive, entry, archive_path, target)
-    except BROKEN_ARCHIVE as error:
-        raise CaseError(f"{archive_path}: cannot be unpacked: {error}.") from error
+def inner_folder(unpacked: Path, archive: str) -> Path:
+    """The folder of the case file in what was unpacked: the folder itself or the only one in it.
 
+    Args:
+        unpacked: where an archive was unpacked.
+        archive: its name, for the error.
 
-def _unpack_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, archive_path: Path, target: Path) -> None:
-    name = entry.filename
-    parts = PurePosixPath(name).parts
-    if name.startswith("/") or "\\" in name or ":" in name or ".." in parts or not parts:
-        raise CaseError(f"{archive_path}: holds '{name[:200]}', a path that leaves the archive.")
-    if stat.S_ISLNK(entry.external_attr >> 16):
-        raise CaseError(f"{archive_path}: holds the link '{name[:200]}'; plain files are allowed.")
-    if entry.file_size > MAX_RATIO * max(entry.compress_size, 1):
-        raise CaseError(
-            f"{archive_path}: '{name[:200]}' unpacks to {entry.file_size} bytes, over {MAX_RATIO} times."
-        )
-    place = target.joinpath(*parts)
-    if entry.is_dir():
-        place.mkdir(parents=True, exist_ok=True)
-        return
-    place.parent.mkdir(parents=True, exist_ok=True)
-    left = entry.file_size
-    with archive.open(entry) as source, place.open("wb") as file:
-        while chunk := source.read(1 << 20):
-            left -= len(chunk)
-            if left < 0:
-                raise CaseError(f"{archive_path}: '{name[:200]}' is larger than it says.")
-            file.write(chunk)
+    Raises:
+        CaseError: there is no case file.
+    """
+    below = list(unpacked.iterdir())
+    inner = unpacked
+    if not (inner / CASE_FILE).is_file() and len(below) == 1 and below[0].is_dir():
+        inner = below[0]
+    if not (inner / CASE_FILE).is_file():
+        raise CaseError(f"{archive}: holds no {CASE_FILE}.")
+    return inner

@@ -92,7 +92,7 @@ def test_a_link_in_an_archive_is_refused(tmp_path: Path) -> None:
         target.writestr("case.toml", "")
         target.writestr(link, "/etc/passwd")
 
-    with pytest.raises(CaseError, match=r"the link 'bed.tif'"), open_case(tmp_path / "a.fevcase"):
+    with pytest.raises(CaseError, match=r"the link or device 'bed.tif'"), open_case(tmp_path / "a.fevcase"):
         pass
 
 
@@ -109,7 +109,7 @@ def test_a_torn_archive_and_one_without_a_case_are_refused(tmp_path: Path) -> No
 
     with pytest.raises(CaseError, match=r"holds no case.toml"), open_case(whole):
         pass
-    with pytest.raises(CaseError, match="cannot be unpacked"), open_case(tmp_path / "torn.fevcase"):
+    with pytest.raises(CaseError, match="its end is missing"), open_case(tmp_path / "torn.fevcase"):
         pass
 
 
