@@ -27,6 +27,7 @@ class RunRecord:
         facts: what the tree keeps of the case: grid, source, licence (opaque bytes).
         label: the name that people gave it, or nothing.
         pinned: whether it is kept whatever the budget of the store.
+        owner: id of the token that made it; nothing for the token file.
     """
 
     run: str
@@ -45,6 +46,7 @@ class RunRecord:
     facts: bytes
     label: str = ""
     pinned: bool = False
+    owner: str = ""
 
 
 @dataclass(frozen=True)
@@ -104,6 +106,9 @@ class EditEventKind(StrEnum):
     """What happened to the working list of edits."""
 
     APPEND = "append"
+    APPEND_MANY = "append_many"
+    REPLACE = "replace"
+    DELETE = "delete"
     UNDO = "undo"
     REDO = "redo"
 

@@ -24,38 +24,9 @@ from solver_service.store.records import (
     RunRecord,
 )
 from solver_service.store.room import store_failure
+from solver_service.store.schema import SCHEMA, UPGRADES, VERSION
 
-SCHEMA_VERSION = 2
 BUSY_TIMEOUT_S = 10.0
-
-_SCHEMA = """
-CREATE TABLE service (key TEXT PRIMARY KEY, value INTEGER NOT NULL) WITHOUT ROWID;
-CREATE TABLE runs (
-    run TEXT PRIMARY KEY, "case" TEXT NOT NULL, case_fingerprint TEXT NOT NULL, title TEXT NOT NULL,
-    parent TEXT REFERENCES runs(run), branch_index INTEGER NOT NULL, status TEXT NOT NULL,
-    status_reason TEXT NOT NULL, duration REAL NOT NULL, output_interval REAL NOT NULL, device TEXT NOT NULL,
-    bed_revision INTEGER NOT NULL, bed_edits BLOB NOT NULL, facts BLOB NOT NULL,
-    label TEXT NOT NULL DEFAULT '', pinned INTEGER NOT NULL DEFAULT 0);
-CREATE TABLE edit_events (
-    run TEXT NOT NULL REFERENCES runs(run), sequence INTEGER NOT NULL, kind TEXT NOT NULL, edit BLOB NOT NULL,
-    PRIMARY KEY (run, sequence)) WITHOUT ROWID;
-CREATE TABLE frames (
-    run TEXT NOT NULL REFERENCES runs(run), "index" INTEGER NOT NULL, time REAL NOT NULL, revision INTEGER NOT
-    NULL, key_index INTEGER NOT NULL, segment TEXT NOT NULL, "offset" INTEGER NOT NULL, size INTEGER NOT NULL,
-    crc32 INTEGER NOT NULL, PRIMARY KEY (run, "index")) WITHOUT ROWID;
-CREATE TABLE checkpoints (
-    run TEXT NOT NULL REFERENCES runs(run), time REAL NOT NULL, step_count INTEGER NOT NULL, name TEXT NOT
-    NULL, crc32 INTEGER NOT NULL, size INTEGER NOT NULL, PRIMARY KEY (run, name));
-CREATE TABLE run_events (run TEXT NOT NULL, wall_time REAL NOT NULL, kind TEXT NOT NULL, detail TEXT NOT
-NULL); INSERT INTO service VALUES ('epoch', 0);
-"""
-_UPGRADES = {
-    1: """
-ALTER TABLE runs ADD COLUMN label TEXT NOT NULL DEFAULT '';
-ALTER TABLE runs ADD COLUMN pinned INTEGER NOT NULL DEFAULT 0;
-"""
-}
-"""What leads from a schema to the next one."""
 
 
 def _columns(record: type) -> str:
@@ -93,11 +64,11 @@ class RunDatabase:
             self._db.execute("PRAGMA journal_mode = WAL")
             version = self._db.execute("PRAGMA user_version").fetchone()[0]
             if version == 0:
-                self._db.executescript(f"BEGIN;{_SCHEMA}PRAGMA user_version = {SCHEMA_VERSION};COMMIT;")
-            elif not 0 < version <= SCHEMA_VERSION:
-                raise StoreError(f"store {path} has schema {version}; this service reads {SCHEMA_VERSION}")
-            for old in range(max(version, 1), SCHEMA_VERSION if version else 0):
-                self._db.executescript(f"BEGIN;{_UPGRADES[old]}PRAGMA user_version = {old + 1};COMMIT;")
+                self._db.executescript(f"BEGIN;{SCHEMA}PRAGMA user_version = {VERSION};COMMIT;")
+            elif not 0 < version <= VERSION:
+                raise StoreError(f"store {path} has schema {version}; this service reads {VERSION}")
+            for old in range(max(version, 1), VERSION if version else 0):
+                self._db.executescript(f"BEGIN;{UPGRADES[old]}PRAGMA user_version = {old + 1};COMMIT;")
 
     def close(self) -> None:
         """Close the connection."""
@@ -152,7 +123,8 @@ class RunDatabase:
         """All runs in the order in which they were made."""
         with _told(self._path):
             rows = self._db.execute(f"SELECT {_RUN} FROM runs ORDER BY rowid").fetchall()
-        return [replace(RunRecord(*row), pinned=bool(row[-1])) for row in rows]
+        records = [RunRecord(*row) for row in rows]
+        return [replace(record, pinned=bool(record.pinned)) for record in records]
 
     def mark_run(self, run: str, label: str, pinned: bool) -> None:
         """Record the name that people gave a run, and whether it is kept whatever the budget."""
@@ -242,6 +214,16 @@ class RunDatabase:
         """Size of the frames of every run that has some [bytes]."""
         with _told(self._path):
             return dict(self._db.execute("SELECT run, SUM(size) FROM frames GROUP BY run").fetchall())
+
+    def owned_bytes(self, owner: str) -> int:
+        """Size of the frames and checkpoints of the runs of an owner [bytes]."""
+        with _told(self._path):
+            row = self._db.execute(
+                "SELECT (SELECT COALESCE(SUM(size), 0) FROM frames JOIN runs USING (run) WHERE owner = ?) "
+                "+ (SELECT COALESCE(SUM(size), 0) FROM checkpoints JOIN runs USING (run) WHERE owner = ?)",
+                (owner, owner),
+            ).fetchone()
+        return int(row[0])
 
     def used_bytes(self) -> int:
         """Size of all frames and checkpoints [bytes]."""
