@@ -60,8 +60,26 @@ MAX_LOG_VERTICES = 32_768
 MAX_EDIT_WORK = 1 << 22
 """Most cells (for an area: crossings of sides and rows) that the raster of one edit may look at."""
 
+MAX_HISTORY_VERTICES = 1 << 18
+"""Most vertices of all changes of a working list that can be undone or redone; the oldest are forgotten."""
+
+MAX_EDITS_AT_ONCE = 128
+"""Most edits of one `append_edits`."""
+
 MAX_PENDING_COMMANDS = 64
 """Most commands a client may have unanswered."""
+
+MAX_FORCING_ITEMS = 256
+"""Most items of forcing of a case that a client is told of and may change."""
+
+MAX_FORCING_CHANGES = 256
+"""Most changes in the working forcing of a run."""
+
+MAX_FORCING_POINTS = 4096
+"""Most entries of all series in the working forcing of a run."""
+
+MAX_ITEM_POINTS = 256
+"""Most entries of the case's own series of one item; longer ones are thinned."""
 
 DEFAULT_CREDIT = 2
 """Frames a new subscription may be sent before the first `credit`."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
@@ -13,6 +13,7 @@ from protocol.limits import MAX_VERTICES
 Vertex = tuple[Coordinate, Coordinate]
 Magnitude = Annotated[float, Meta(gt=0, le=10_000)]
 Width = Annotated[float, Meta(gt=0, le=100_000)]
+EditName = Annotated[str, Meta(max_length=100)]
 
 
 class Operation(StrEnum):
@@ -47,7 +48,10 @@ class EditLine(WireStruct, frozen=True, tag_field="kind", tag="line"):
         magnitude: height or depth m [m].
         level: real elevation of the crest or bottom [m] for replace; wins over reference_z.
         reference_z: ground z_b [m, relative to datum_offset] at each vertex when it was drawn, for replace.
+        name: the name that people gave it.
     """
+
+    left_out: ClassVar[tuple[str, ...]] = ("name",)
 
     id: Identifier
     vertices: Annotated[tuple[Vertex, ...], Meta(min_length=2, max_length=MAX_VERTICES)]
@@ -57,6 +61,7 @@ class EditLine(WireStruct, frozen=True, tag_field="kind", tag="line"):
     magnitude: Magnitude
     level: Elevation | None = None
     reference_z: Annotated[tuple[Elevation, ...], Meta(max_length=MAX_VERTICES)] | None = None
+    name: EditName = ""
 
     def __post_init__(self) -> None:
         """Refuse a reference that does not fit the vertices."""
@@ -76,7 +81,10 @@ class EditArea(WireStruct, frozen=True, tag_field="kind", tag="area"):
         level: real elevation of the top or bottom [m] for replace; wins over reference_z.
         reference_z: ground z_b [m, relative to datum_offset] at each corner when it was drawn;
             the mean counts.
+        name: the name that people gave it.
     """
+
+    left_out: ClassVar[tuple[str, ...]] = ("name",)
 
     id: Identifier
     vertices: Annotated[tuple[Vertex, ...], Meta(min_length=3, max_length=MAX_VERTICES)]
@@ -85,6 +93,7 @@ class EditArea(WireStruct, frozen=True, tag_field="kind", tag="area"):
     magnitude: Magnitude
     level: Elevation | None = None
     reference_z: Annotated[tuple[Elevation, ...], Meta(max_length=MAX_VERTICES)] | None = None
+    name: EditName = ""
 
     def __post_init__(self) -> None:
         """Refuse a reference that does not fit the vertices."""

@@ -10,8 +10,17 @@ from protocol.messages.control import (
     ReleaseControl,
     TakeControl,
 )
-from protocol.messages.edits import AppendEdit, EditsChanged, RedoEdit, UndoEdit
+from protocol.messages.edits import (
+    AppendEdit,
+    AppendEdits,
+    DeleteEdit,
+    EditsChanged,
+    RedoEdit,
+    ReplaceEdit,
+    UndoEdit,
+)
 from protocol.messages.flow import Credit, Seek, Subscribe, SubscriptionMode, Unsubscribe
+from protocol.messages.forcing import ChangeForcing, ForcingChanged
 from protocol.messages.frames import Frame, FramePart
 from protocol.messages.handshake import Hello, ResumePoint, Welcome, WireLimits
 from protocol.messages.runs import (
@@ -51,8 +60,12 @@ ClientMessage = (
     | Seek
     | Credit
     | AppendEdit
+    | AppendEdits
+    | ReplaceEdit
+    | DeleteEdit
     | UndoEdit
     | RedoEdit
+    | ChangeForcing
     | Recalculate
     | RenameRun
     | PinRun
@@ -72,6 +85,7 @@ ServerMessage = (
     | RunBranched
     | Terrain
     | EditsChanged
+    | ForcingChanged
     | Frame
     | FramePart
     | Progress
@@ -85,16 +99,20 @@ ServerMessage = (
 __all__ = [
     "Ack",
     "AppendEdit",
+    "AppendEdits",
     "CaseList",
     "CaseSummary",
+    "ChangeForcing",
     "ClientMessage",
     "Command",
     "ControlChanged",
     "ControlRequested",
     "Credit",
+    "DeleteEdit",
     "DeleteRun",
     "EditsChanged",
     "Error",
+    "ForcingChanged",
     "Frame",
     "FramePart",
     "GetTerrain",
@@ -112,6 +130,7 @@ __all__ = [
     "RedoEdit",
     "ReleaseControl",
     "RenameRun",
+    "ReplaceEdit",
     "ResumePoint",
     "ResumeRun",
     "RunBranched",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from protocol import Edit, EditsChanged, check_edit
 from solver_service.runs.audience import Audience
-from solver_service.runs.edit_blobs import pack_edit
+from solver_service.runs.edit_change import EditChange
 from solver_service.runs.run_status import Move, check_move
-from solver_service.runs.run_tree import Run, RunTree, replayed_log
+from solver_service.runs.run_tree import RunTree
 from solver_service.runs.store_thread import StoreThread
-from solver_service.store import EditEvent, EditEventKind, RunDatabase
+from solver_service.store import EditEventKind, RunDatabase
 
 
 class EditDesk:
@@ -23,40 +23,50 @@ class EditDesk:
     def changed(self, name: str) -> EditsChanged:
         """The working list of a run as it is told to viewers."""
         log = self._tree.get(name).edit_log
-        return EditsChanged(name, log.revision, log.edits, log.can_undo, log.can_redo)
+        return EditsChanged(name, log.revision, log.edits, log.can_undo, log.can_redo, log.undone)
 
-    async def append(self, name: str, edit: Edit) -> int:
-        """Add an edit to the working list; gives the new revision.
+    async def append(self, name: str, *edits: Edit) -> int:
+        """Add edits to the working list, all or none; gives the new revision.
 
         Raises:
-            EditError: the edit does not fit the terrain or the list.
+            EditError: an edit does not fit the terrain or the list.
         """
-        run = self._tree.get(name)
-        check_edit(edit, run.facts.grid.geometry)
-        return await self._change(run, EditEventKind.APPEND, edit)
+        kind = EditEventKind.APPEND if len(edits) == 1 else EditEventKind.APPEND_MANY
+        return await self._change(name, EditChange(kind, edits))
+
+    async def replace(self, name: str, edit: Edit) -> int:
+        """Put an edit in the place of the one of the same id; gives the new revision.
+
+        Raises:
+            EditError: it does not fit the terrain, or the list has none of that id.
+        """
+        return await self._change(name, EditChange(EditEventKind.REPLACE, (edit,)))
+
+    async def delete(self, name: str, edit: str) -> int:
+        """Take the edit of an id out of the working list; gives the new revision.
+
+        Raises:
+            EditError: the list has none of that id.
+        """
+        return await self._change(name, EditChange(EditEventKind.DELETE, deleted=edit))
 
     async def undo(self, name: str) -> int:
-        """Take the last edit off the working list; gives the new revision."""
-        return await self._change(self._tree.get(name), EditEventKind.UNDO)
+        """Take the last change back; gives the new revision."""
+        return await self._change(name, EditChange(EditEventKind.UNDO))
 
     async def redo(self, name: str) -> int:
-        """Put the edit that was last undone back; gives the new revision."""
-        return await self._change(self._tree.get(name), EditEventKind.REDO)
+        """Make the change that was last undone again; gives the new revision."""
+        return await self._change(name, EditChange(EditEventKind.REDO))
 
-    async def _change(self, run: Run, kind: EditEventKind, edit: Edit | None = None) -> int:
+    async def _change(self, name: str, change: EditChange) -> int:
+        run = self._tree.get(name)
+        for edit in change.edits:
+            check_edit(edit, run.facts.grid.geometry)
         async with run.lock:
             check_move(run.run, run.status, Move.EDIT)
-            events = await self._store.call(RunDatabase.edit_events, run.run)
-            log = replayed_log(events)  # the change is tried on a copy: it counts once it is stored
-            if kind is EditEventKind.APPEND and edit is not None:
-                log.append(edit)
-            elif kind is EditEventKind.UNDO:
-                log.undo()
-            else:
-                log.redo()
-            packed = pack_edit(edit) if edit is not None else b""
-            event = EditEvent(run.run, len(events) + 1, kind, packed)
-            await self._store.call(RunDatabase.append_edit_event, event)
+            log = run.edit_log.copy()  # the change is tried on a copy: it counts once it is stored
+            revision = change.make(log)
+            await self._store.call(RunDatabase.append_edit_event, change.event(run.run, revision))
             run.edit_log = log
         self._audience.announce(self.changed(run.run))
-        return log.revision
+        return revision

@@ -16,7 +16,8 @@ import msgspec
 from protocol import BlockLayout, Edit, FrameEncoder
 from solver_service.errors import StoreError
 from solver_service.runs.computation import Computation
-from solver_service.runs.edit_blobs import pack_edits, unpack_edit, unpack_edits
+from solver_service.runs.edit_blobs import pack_edits, unpack_edits
+from solver_service.runs.edit_change import EditChange
 from solver_service.runs.frame_grouping import FrameGrouping
 from solver_service.runs.lineage import Leg, lineage
 from solver_service.store import RunDatabase
@@ -44,11 +45,21 @@ class LoggedRun(msgspec.Struct, frozen=True, tag="run"):
 
 
 class LoggedEdit(msgspec.Struct, frozen=True, tag="edit"):
-    """A change of the working list, in the order in which it was acknowledged."""
+    """A change of the working list, in the order in which it was acknowledged.
+
+    Attributes:
+        sequence: 1 for the first.
+        kind: what happened.
+        edit: the edit that was added, or that came in the place of the one of its id.
+        edits: the edits that were added at once.
+        deleted: id of the edit that was deleted.
+    """
 
     sequence: int
     kind: str
     edit: Edit | None
+    edits: tuple[Edit, ...] = ()
+    deleted: str = ""
 
 
 class LoggedMove(msgspec.Struct, frozen=True, tag="move"):
@@ -119,15 +130,19 @@ def read_event_log(database: RunDatabase, name: str) -> EventLog:
         record.output_interval,
         legs,
     )
-    edits = tuple(
-        LoggedEdit(event.sequence, event.kind.value, unpack_edit(event.edit) if event.edit else None)
-        for event in database.edit_events(name)
-    )
+    edits = tuple(_logged(event.sequence, EditChange.of(event)) for event in database.edit_events(name))
     moves = tuple(
         LoggedMove(event.wall_time, event.kind, event.detail) for event in database.run_events(name)
     )
     frames = tuple(LoggedFrame(row.index, row.size, row.crc32) for row in database.frames(name))
     return EventLog(run, (*edits, *moves), frames)
+
+
+def _logged(sequence: int, change: EditChange) -> LoggedEdit:
+    edits = change.edits
+    if len(edits) == 1:
+        return LoggedEdit(sequence, change.kind.value, edits[0])
+    return LoggedEdit(sequence, change.kind.value, None, edits, change.deleted)
 
 
 def parse_event_log(text: bytes) -> EventLog:

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 from protocol import EditLog, LineageEntry, RunInfo
 from solver_service.errors import RunError
 from solver_service.runs.case_facts import CaseFacts
-from solver_service.runs.edit_blobs import unpack_edit
+from solver_service.runs.edit_change import EditChange
 from solver_service.runs.lineage import Leg, branch_point, lineage, owner
 from solver_service.runs.run_status import RunStatus
 from solver_service.runs.worker import Worker
-from solver_service.store import EditEvent, EditEventKind, FrameRecord, RunRecord
+from solver_service.store import EditEvent, FrameRecord, RunRecord
 
 _SLACK = 1e-9
 
@@ -169,11 +169,5 @@ def replayed_log(events: Iterable[EditEvent]) -> EditLog:
     """The working list that a history of edit events makes."""
     log = EditLog()
     for event in events:
-        match event.kind:
-            case EditEventKind.APPEND:
-                log.append(unpack_edit(event.edit))
-            case EditEventKind.UNDO:
-                log.undo()
-            case EditEventKind.REDO:
-                log.redo()
+        EditChange.of(event).make(log)
     return log

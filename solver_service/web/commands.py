@@ -7,8 +7,10 @@ from typing import Protocol
 from protocol import (
     Ack,
     AppendEdit,
+    AppendEdits,
     CaseList,
     Command,
+    DeleteEdit,
     DeleteRun,
     GetTerrain,
     ListCases,
@@ -19,6 +21,7 @@ from protocol import (
     RedoEdit,
     ReleaseControl,
     RenameRun,
+    ReplaceEdit,
     ResumeRun,
     RunChanged,
     RunList,
@@ -42,18 +45,11 @@ from solver_service.web.outbox import Outbox
 
 LISTED = 1000
 
+EditCommand = AppendEdit | AppendEdits | ReplaceEdit | DeleteEdit | UndoEdit | RedoEdit
+"""Commands that change a working list of edits."""
+
 CHANGES = (
-    PauseRun
-    | ResumeRun
-    | StopRun
-    | DeleteRun
-    | RenameRun
-    | PinRun
-    | UnpinRun
-    | AppendEdit
-    | UndoEdit
-    | RedoEdit
-    | Recalculate
+    PauseRun | ResumeRun | StopRun | DeleteRun | RenameRun | PinRun | UnpinRun | EditCommand | Recalculate
 )
 """Commands for which a session must control the run."""
 
@@ -137,13 +133,8 @@ async def carry_out(command: Command, client: Client) -> None:
         case Unsubscribe():
             client.tell(Ack(command.id))
             client.feed.follow_session()
-        case AppendEdit():
-            revision = await registry.edits.append(command.run, command.edit)
-            client.tell(Ack(command.id, {"revision": revision}))
-        case UndoEdit():
-            client.tell(Ack(command.id, {"revision": await registry.edits.undo(command.run)}))
-        case RedoEdit():
-            client.tell(Ack(command.id, {"revision": await registry.edits.redo(command.run)}))
+        case AppendEdit() | AppendEdits() | ReplaceEdit() | DeleteEdit() | UndoEdit() | RedoEdit():
+            client.tell(Ack(command.id, {"revision": await _edit(command, registry)}))
         case Recalculate():
             watched = client.feed.run
             child = await registry.branching.recalculate(
@@ -153,6 +144,22 @@ async def carry_out(command: Command, client: Client) -> None:
             client.tell(Ack(command.id, {"run": child.run}))
             if watched == command.run:
                 client.feed.move_to(child.run, command.index)
+
+
+async def _edit(command: EditCommand, registry: RunRegistry) -> int:
+    match command:
+        case AppendEdit():
+            return await registry.edits.append(command.run, command.edit)
+        case AppendEdits():
+            return await registry.edits.append(command.run, *command.edits)
+        case ReplaceEdit():
+            return await registry.edits.replace(command.run, command.edit)
+        case DeleteEdit():
+            return await registry.edits.delete(command.run, command.edit)
+        case UndoEdit():
+            return await registry.edits.undo(command.run)
+        case RedoEdit():
+            return await registry.edits.redo(command.run)
 
 
 def _release(command: ReleaseControl, client: Client) -> None:

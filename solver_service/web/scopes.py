@@ -6,7 +6,9 @@ from enum import IntEnum
 
 from protocol import (
     AppendEdit,
+    AppendEdits,
     Command,
+    DeleteEdit,
     DeleteRun,
     GetTerrain,
     ListCases,
@@ -17,6 +19,7 @@ from protocol import (
     RedoEdit,
     ReleaseControl,
     RenameRun,
+    ReplaceEdit,
     ResumeRun,
     Seek,
     StartRun,
@@ -57,6 +60,9 @@ COMMAND_SCOPES: dict[type[Command], Scope] = {
     StopRun: Scope.CONTROLLER,
     RenameRun: Scope.CONTROLLER,
     AppendEdit: Scope.CONTROLLER,
+    AppendEdits: Scope.CONTROLLER,
+    ReplaceEdit: Scope.CONTROLLER,
+    DeleteEdit: Scope.CONTROLLER,
     UndoEdit: Scope.CONTROLLER,
     RedoEdit: Scope.CONTROLLER,
     Recalculate: Scope.CONTROLLER,

@@ -40,7 +40,8 @@ class Session(RuleBasedStateMachine):
         super().__init__()
         self.runs: list[str] = []
         self.edits: dict[str, list[str]] = {}
-        self.undone: dict[str, list[str]] = {}
+        self.done: dict[str, list[list[str]]] = {}
+        self.undone: dict[str, list[list[str]]] = {}
         self.revision: dict[str, int] = {}
         self.pinned: set[str] = set()
         self.parent: dict[str, str] = {}
@@ -55,6 +56,7 @@ class Session(RuleBasedStateMachine):
     def know(self, run: str, like: str | None = None) -> None:
         self.runs.append(run)
         self.edits[run] = list(self.edits.get(like or "", []))
+        self.done[run] = list(self.done.get(like or "", []))
         self.undone[run] = list(self.undone.get(like or "", []))
         self.revision[run] = self.revision.get(like or "", 0)
 
@@ -95,23 +97,51 @@ class Session(RuleBasedStateMachine):
             self.pinned.discard(run)
 
     @precondition(lambda self: self.runs)
-    @rule(number=PICK)
-    def append(self, number: int) -> None:
+    @rule(number=PICK, count=st.integers(1, 3))
+    def append(self, number: int, count: int) -> None:
         run = self.pick(number)
-        self.numbers += 1
-        name = f"e{self.numbers}"
-        revision = self.client.do(protocol.AppendEdit, run=run, edit=levee(name))["revision"]
-        self.edits[run].append(name)
-        self.undone[run] = []
-        self.changed(run, revision)
+        names = [f"e{self.numbers + n}" for n in range(count)]
+        self.numbers += count
+        edits = tuple(levee(name) for name in names)
+        if count == 1:
+            answer = self.client.do(protocol.AppendEdit, run=run, edit=edits[0])
+        else:
+            answer = self.client.do(protocol.AppendEdits, run=run, edits=edits)
+        self.change(run, [*self.edits[run], *names], answer["revision"])
+
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK, which=PICK)
+    def delete(self, number: int, which: int) -> None:
+        run = self.pick(number)
+        names = [*self.edits[run], "never"]
+        name = names[which % len(names)]
+        answer = self.client.ask(protocol.DeleteEdit, run=run, edit=name)
+        if name == "never":
+            assert "is not in the list" in answer.message
+        else:
+            left = [other for other in self.edits[run] if other != name]
+            self.change(run, left, answer.result["revision"])
+
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK, which=PICK)
+    def replace(self, number: int, which: int) -> None:
+        run = self.pick(number)
+        names = [*self.edits[run], "never"]
+        name = names[which % len(names)]
+        answer = self.client.ask(protocol.ReplaceEdit, run=run, edit=levee(name, height=2.0))
+        if name == "never":
+            assert "is not in the list" in answer.message
+        else:
+            self.change(run, self.edits[run], answer.result["revision"])
 
     @precondition(lambda self: self.runs)
     @rule(number=PICK)
     def undo(self, number: int) -> None:
         run = self.pick(number)
         answer = self.client.ask(protocol.UndoEdit, run=run)
-        if self.edits[run]:
-            self.undone[run].append(self.edits[run].pop())
+        if self.done[run]:
+            self.undone[run].append(self.edits[run])
+            self.edits[run] = self.done[run].pop()
             self.changed(run, answer.result["revision"])
         else:
             assert "no edit to undo" in answer.message
@@ -122,7 +152,8 @@ class Session(RuleBasedStateMachine):
         run = self.pick(number)
         answer = self.client.ask(protocol.RedoEdit, run=run)
         if self.undone[run]:
-            self.edits[run].append(self.undone[run].pop())
+            self.done[run].append(self.edits[run])
+            self.edits[run] = self.undone[run].pop()
             self.changed(run, answer.result["revision"])
         else:
             assert "no edit to redo" in answer.message
@@ -147,6 +178,12 @@ class Session(RuleBasedStateMachine):
         else:
             assert stale, answer.message
             assert "are at revision" in answer.message
+
+    def change(self, run: str, names: list[str], revision: Any) -> None:
+        self.done[run].append(self.edits[run])
+        self.undone[run] = []
+        self.edits[run] = names
+        self.changed(run, revision)
 
     def changed(self, run: str, revision: Any) -> None:
         self.revision[run] += 1

@@ -2,6 +2,8 @@
 
 from typing import get_args
 
+import msgspec
+
 import protocol as p
 from protocol import Message
 
@@ -22,6 +24,7 @@ AREA = p.EditArea(
     magnitude=1.5,
     level=None,
 )
+NAMED = msgspec.structs.replace(LINE, name="Levee north")
 GRID = p.GridInfo(
     nrows=120,
     ncols=200,
@@ -104,6 +107,10 @@ CLIENT_EXAMPLES: dict[str, Message] = {
     "credit": p.Credit(1),
     "append_edit": p.AppendEdit(11, "r-1", LINE),
     "append_edit-area": p.AppendEdit(12, "r-1", AREA),
+    "append_edit-named": p.AppendEdit(13, "r-1", NAMED),
+    "append_edits": p.AppendEdits(14, "r-1", (LINE, AREA)),
+    "replace_edit": p.ReplaceEdit(15, "r-1", NAMED),
+    "delete_edit": p.DeleteEdit(16, "r-1", "pit"),
     "undo_edit": p.UndoEdit(13, "r-1"),
     "redo_edit": p.RedoEdit(14, "r-1"),
     "recalculate": p.Recalculate(15, "r-1", 7, 1),
@@ -134,6 +141,7 @@ SERVER_EXAMPLES: dict[str, Message] = {
     "run_branched": p.RunBranched("r-1", CHILD),
     "terrain": p.Terrain(7, "r-1", 0, 2, (120, 200), "zstd-f32", bytes(range(16))),
     "edits_changed": p.EditsChanged("r-1", 2, (LINE, AREA), True, False),
+    "edits_changed-undone": p.EditsChanged("r-1", 4, (NAMED,), True, True, (AREA,)),
     "frame": p.Frame("r-1", 33, 330.0, 1, 32, 0.001, b"\x1b\x02", 6, 0xDEADBEEF, bytes(range(12))),
     "frame_part": p.FramePart("r-1", 33, 1, 2, bytes(range(8))),
     "progress": p.Progress("r-1", 331.5, 1200, 0.25, 40.0, 8.3, 3.5e6, -1e-9, 4021, (60, 100), 86.5),

@@ -6,7 +6,14 @@ import pytest
 
 from solver_service.errors import StoreError
 from solver_service.runs import RunStatus
-from solver_service.runs.event_log import EventLog, is_same, parse_event_log, read_event_log, replay
+from solver_service.runs.event_log import (
+    EventLog,
+    LoggedEdit,
+    is_same,
+    parse_event_log,
+    read_event_log,
+    replay,
+)
 from solver_service.store import DataFolder, RunDatabase
 from tests.end_to_end.dam_break import levee, write_dam_break
 from tests.solver_service.runs.conftest import Service
@@ -22,8 +29,10 @@ def log(service: Service) -> EventLog:
     child = service.call(registry.branching.recalculate(root.run, 6, 1))
     service.wait(lambda: child.frame_count > 10)
     service.call(registry.edits.undo(child.run))
-    service.call(registry.edits.append(child.run, levee("b", y=500.0)))
-    run = service.call(registry.branching.recalculate(child.run, 9, 3))
+    service.call(registry.edits.append(child.run, levee("b", y=400.0), levee("c", y=300.0)))
+    service.call(registry.edits.replace(child.run, levee("b", y=500.0)))
+    service.call(registry.edits.delete(child.run, "c"))
+    run = service.call(registry.branching.recalculate(child.run, 9, 5))
     service.wait(lambda: run.frame_count > 12)
     if run.worker is not None:
         run.worker.kill()
@@ -52,8 +61,16 @@ def test_a_log_survives_its_text_and_tells_what_happened(log: EventLog) -> None:
     assert parse_event_log(log.lines()) == log
     assert [leg.first_index for leg in log.run.legs] == [0, 6, 9]
     assert [[edit.id for edit in leg.edits] for leg in log.run.legs] == [[], ["a"], ["b"]]
-    edits = [(event.kind, event.edit and event.edit.id) for event in log.events if hasattr(event, "edit")]
-    assert edits == [("append", "a"), ("undo", None), ("append", "b")]
+    edits = [event for event in log.events if isinstance(event, LoggedEdit)]
+    assert [(event.kind, event.edit and event.edit.id) for event in edits] == [
+        ("append", "a"),
+        ("undo", None),
+        ("append_many", None),
+        ("replace", "b"),
+        ("delete", None),
+    ]
+    assert [edit.id for edit in edits[2].edits] == ["b", "c"]
+    assert edits[4].deleted == "c"
     moves = [event.kind for event in log.events if hasattr(event, "wall_time")]
     assert (moves[0], moves[-1]) == ("created", "finished")
 
