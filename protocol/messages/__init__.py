@@ -20,7 +20,6 @@ from protocol.messages.edits import (
     UndoEdit,
 )
 from protocol.messages.flow import Credit, Seek, Subscribe, SubscriptionMode, Unsubscribe
-from protocol.messages.forcing import ChangeForcing, ForcingChanged
 from protocol.messages.frames import Frame, FramePart
 from protocol.messages.handshake import Hello, ResumePoint, Welcome, WireLimits
 from protocol.messages.runs import (
@@ -65,7 +64,6 @@ ClientMessage = (
     | DeleteEdit
     | UndoEdit
     | RedoEdit
-    | ChangeForcing
     | Recalculate
     | RenameRun
     | PinRun
@@ -85,7 +83,6 @@ ServerMessage = (
     | RunBranched
     | Terrain
     | EditsChanged
-    | ForcingChanged
     | Frame
     | FramePart
     | Progress
@@ -102,7 +99,6 @@ __all__ = [
     "AppendEdits",
     "CaseList",
     "CaseSummary",
-    "ChangeForcing",
     "ClientMessage",
     "Command",
     "ControlChanged",
@@ -112,7 +108,6 @@ __all__ = [
     "DeleteRun",
     "EditsChanged",
     "Error",
-    "ForcingChanged",
     "Frame",
     "FramePart",
     "GetTerrain",
