@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import zlib
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from protocol.blocks import BlockLayout, UInt8Array, UInt16Array
+from protocol.bed_change import BedCells, pack_bed, unpack_bed
+from protocol.blocks import BlockLayout, IntArray, UInt8Array, UInt16Array
 from protocol.codec import pack, unpack_frame
 from protocol.compression import compress, decompress
 from protocol.depth_codec import Q_MAX, FloatArray, choose_depth_scale, dequantise_depth, quantise_depth
@@ -81,6 +82,7 @@ class FrameEncoder:
         *,
         scale: float | None = None,
         force_key: bool = False,
+        bed: BedCells | None = None,
     ) -> bytes:
         """Pack one frame.
 
@@ -92,12 +94,13 @@ class FrameEncoder:
             water: depth h [m], shape [nrows, ncols]; or (q, states) as `quantise_depth` and `classify` give.
             scale: scale [m] of q; by default the group's. Another one than the group's makes a key frame.
             force_key: whether to make a key frame in any case.
+            bed: cells that breaches have lowered, as row x ncols + col, rising, and their bed [m].
 
         Returns:
             The bytes of the `frame` message.
 
         Raises:
-            FrameError: when the water does not fit the layout or is not finite.
+            FrameError: when the water or the bed does not fit the layout or is not finite.
         """
         if isinstance(water, tuple):
             q, states = water
@@ -118,6 +121,7 @@ class FrameEncoder:
         mask = self.layout.owned_mask(states)
         cells = q[mask] if is_key else q[mask] - self._key_q[mask]
         raw = cells.astype("<u2", copy=False).data.cast("B")
+        bed_cells, bed_values = pack_bed(bed, self.layout)
         return pack(
             Frame(
                 run=run,
@@ -128,8 +132,10 @@ class FrameEncoder:
                 scale=scale,
                 states=self.layout.pack_states(states),
                 raw_size=raw.nbytes,
-                checksum=zlib.crc32(raw),
+                checksum=_checksum(raw, bed_cells, bed_values),
                 payload=compress(raw),
+                bed_cells=bed_cells,
+                bed_values=bed_values,
             )
         )
 
@@ -154,6 +160,8 @@ class DecodedFrame:
         scale: depth of one unit of q [m].
         q: quantised depth, uint16 [nrows, ncols], read-only.
         states: block states, uint8 [block_rows, block_cols].
+        bed_cells: cells whose bed is not base and edits, as row x ncols + col, rising, int64 [k].
+        bed_values: their bed [m, relative to the datum offset], float32 [k].
     """
 
     run: str
@@ -163,6 +171,8 @@ class DecodedFrame:
     scale: float
     q: UInt16Array
     states: UInt8Array
+    bed_cells: IntArray = field(default_factory=lambda: np.zeros(0, np.int64))
+    bed_values: FloatArray = field(default_factory=lambda: np.zeros(0, np.float32))
 
     @cached_property
     def h(self) -> FloatArray:
@@ -200,8 +210,9 @@ class FrameDecoder:
         if frame.raw_size != raw_size:
             raise FrameError(f"{where} declares {frame.raw_size} bytes; its blocks make {raw_size}.")
         raw = decompress(frame.payload, raw_size, raw_size)
-        if zlib.crc32(raw) != frame.checksum:
+        if _checksum(raw, frame.bed_cells, frame.bed_values) != frame.checksum:
             raise FrameError(f"{where} has the wrong checksum.")
+        bed = unpack_bed(frame.bed_cells, frame.bed_values, self.layout)
         cells = np.frombuffer(raw, dtype="<u2").astype(np.uint16, copy=False)
         mask = self.layout.owned_mask(states)
         if not frame.is_key:
@@ -214,7 +225,7 @@ class FrameDecoder:
         q.flags.writeable = False
         if frame.is_key:
             self._keep(frame, q)
-        return DecodedFrame(frame.run, frame.index, frame.time, frame.revision, frame.scale, q, states)
+        return DecodedFrame(frame.run, frame.index, frame.time, frame.revision, frame.scale, q, states, *bed)
 
     def _key_of(self, frame: Frame) -> tuple[float, UInt16Array]:
         key = self._keys.get((frame.run, frame.key_index))
@@ -228,6 +239,10 @@ class FrameDecoder:
         self._keys.move_to_end(name)
         while len(self._keys) > self._keys_kept:
             self._keys.popitem(last=False)
+
+
+def _checksum(raw: bytes | memoryview, bed_cells: bytes, bed_values: bytes) -> int:
+    return zlib.crc32(bed_values, zlib.crc32(bed_cells, zlib.crc32(raw)))
 
 
 def peek_frame(data: bytes) -> Frame:

@@ -27,6 +27,9 @@ MAX_TERRAIN_BYTES = 4 * MAX_CELLS + (1 << 20)
 MAX_STATE_BYTES = 1 << 15
 """Largest packed block states of one frame (two bits a block)."""
 
+MAX_BED_CELLS = 1 << 16
+"""Most cells whose bed a frame tells: what breaches have lowered."""
+
 MAX_PARTS = MAX_TERRAIN_BYTES // PART_BYTES + 1
 """Largest number of parts of one frame or terrain."""
 

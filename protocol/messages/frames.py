@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
@@ -17,7 +17,7 @@ from protocol.fields import (
     RawSize,
     Revision,
 )
-from protocol.limits import MAX_FRAME_BYTES, MAX_STATE_BYTES, PART_BYTES
+from protocol.limits import MAX_BED_CELLS, MAX_FRAME_BYTES, MAX_STATE_BYTES, PART_BYTES
 
 
 class Frame(Message, frozen=True):
@@ -32,9 +32,13 @@ class Frame(Message, frozen=True):
         scale: depth of one unit [m].
         states: block states, two bits a block.
         raw_size: bytes of the payload when unpacked.
-        checksum: CRC-32 of the unpacked payload.
+        checksum: CRC-32 of the unpacked payload, of bed_cells and of bed_values, one after the other.
         payload: depths of the cells owned by blocks that are not dry, compressed.
+        bed_cells: cells whose bed is not base and edits at that time, since breaches have lowered them.
+        bed_values: their bed [m, relative to the datum offset].
     """
+
+    left_out: ClassVar[tuple[str, ...]] = ("bed_cells", "bed_values")
 
     run: Identifier
     index: FrameIndex
@@ -46,6 +50,8 @@ class Frame(Message, frozen=True):
     raw_size: RawSize
     checksum: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)]
     payload: Annotated[bytes, Meta(max_length=MAX_FRAME_BYTES)]
+    bed_cells: Annotated[bytes, Meta(max_length=4 * MAX_BED_CELLS)] = b""
+    bed_values: Annotated[bytes, Meta(max_length=4 * MAX_BED_CELLS)] = b""
 
     @property
     def is_key(self) -> bool:

@@ -44,7 +44,7 @@ def export_run(run_id: str, out: Path, data_dir: Path | None, zarr: bool) -> Non
         frames = _frames_of(run_id, runs, database)
         if not frames:
             raise StoreError(f"Run '{run_id}' has no frame yet.")
-        written = _write(runs[run_id], frames, folder, out, zarr)
+        written = _write(runs, run_id, frames, folder, out, zarr)
     finally:
         database.close()
     print(f"{len(frames)} frames of run {run_id} in {written}")
@@ -64,24 +64,44 @@ def _frames_of(run_id: str, runs: dict[str, RunRecord], database: RunDatabase) -
     return frames
 
 
-def _write(run: RunRecord, frames: list[FrameRecord], folder: DataFolder, out: Path, zarr: bool) -> Path:
+def _write(
+    runs: dict[str, RunRecord],
+    run_id: str,
+    frames: list[FrameRecord],
+    folder: DataFolder,
+    out: Path,
+    zarr: bool,
+) -> Path:
+    run = runs[run_id]
     facts = CaseFacts.unpack(run.facts)
     grid = facts.grid.geometry
     name = "timesteps.zarr" if zarr else "timesteps.nc"
     reader = FrameReader(folder)
     try:
         base = decode_terrain(load_bed(folder, run.case_fingerprint), grid.shape)
-        bed = apply_edits(base, unpack_edits(run.bed_edits), grid).z_b
+        beds = {
+            name: apply_edits(base, unpack_edits(runs[name].bed_edits), grid).z_b
+            for name in {row.run for row in frames} | {run_id}
+        }
         about = TimestepFacts(
-            grid, bed, run.title, facts.source, facts.licence, facts.hypothetical, facts.start_time
+            grid,
+            beds[run_id],
+            run.title,
+            facts.source,
+            facts.licence,
+            facts.hypothetical,
+            facts.start_time,
+            facts.depth_wet,
         )
         with output_folder(out) as scratch:
             writer = ZarrTimesteps(scratch / name, about) if zarr else NetcdfTimesteps(scratch / name, about)
             decoder = FrameDecoder(grid)
             try:
                 for row in frames:
-                    frame = unpack_frame(reader.read(row))
-                    writer.append(row.time, decoder.decode(frame).h)
+                    frame = decoder.decode(unpack_frame(reader.read(row)))
+                    bed = beds[row.run].copy()
+                    bed.flat[frame.bed_cells] = frame.bed_values
+                    writer.append(row.time, frame.h, bed)
             finally:
                 writer.close()
     except ProtocolError as error:

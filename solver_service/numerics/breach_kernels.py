@@ -170,3 +170,15 @@ def lower_bed(
         z[cells[k, 0], cells[k, 1]] = wp.float32(bed - (east - west) / dx)
     else:
         z[cells[k, 0], cells[k, 1]] = ground[k]
+
+
+@wp.kernel(module=STRUCTURE_MODULE)
+def read_bed(
+    z: wp.array2d(dtype=wp.float32),
+    cells: wp.array2d(dtype=wp.int32),
+    # outputs
+    bed: wp.array(dtype=wp.float32),
+):
+    """Bed of the listed cells [m]; `z` is padded, `cells` are padded rows and columns, [cells, 2]."""
+    k = wp.tid()
+    bed[k] = z[cells[k, 0], cells[k, 1]]

@@ -19,6 +19,7 @@ from solver_service.numerics.breach_kernels import (
     WIDTH,
     grow_breaches,
     lower_bed,
+    read_bed,
 )
 from solver_service.numerics.fields import GHOSTS, Fields, FieldStore
 from solver_service.numerics.friction import GRAVITY
@@ -78,6 +79,7 @@ class Breaches:
         along = np.concatenate([along for _, along in footprints])
         self._along = wp.array(along, dtype=wp.float64, device=device)
         self._ground = wp.zeros(len(self._cells), dtype=wp.float32, device=device)
+        self._bed = wp.zeros_like(self._ground)
         self._states = wp.array(self._first_states(), dtype=wp.float64, device=device)
         self.take_ground()
 
@@ -152,6 +154,21 @@ class Breaches:
                 BreachState(breach.id, started if begun else None, numbers[int(WIDTH)], numbers[int(LEVEL)])
             )
         return tuple(shown)
+
+    def lowered(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]:
+        """Cells that stand below their ground now, as row x ncols + col, rising, and their bed [m]."""
+        wp.launch(
+            read_bed,
+            dim=len(self._cells),
+            inputs=[self._store.arrays["z"], self._padded],
+            outputs=[self._bed],
+            device=self._store.device,
+        )
+        bed = self._bed.numpy()
+        eaten = bed < self._ground.numpy()
+        places = self._cells[eaten, 0].astype(np.int64) * self._store.ncols + self._cells[eaten, 1]
+        order = np.argsort(places)
+        return places[order], bed[eaten][order]
 
     def volumes(self) -> PartVolumes:
         """Nothing: water stays where the bed sinks."""

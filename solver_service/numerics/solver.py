@@ -278,6 +278,12 @@ class ShallowWaterSolver:
         uptake = next((part for part in self._after_step if isinstance(part, GroundUptake)), None)
         return None if uptake is None else uptake.depth
 
+    def breached_bed(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]:
+        """Cells that breaches have lowered so far, as row x ncols + col, rising, and their bed now [m]."""
+        if self._breaches is None:
+            return np.zeros(0, np.int64), np.zeros(0, np.float32)
+        return self._breaches.lowered()
+
     def breach_states(self) -> tuple[BreachState, ...]:
         """How far each breach of the model has grown."""
         return self._breaches.states() if self._breaches is not None else ()

@@ -113,7 +113,7 @@ class _Run:
         interval = self.case.output_interval
         frames = math.ceil(until / interval - 1e-9)
         for writer in writers:
-            writer.append(0.0, self.solver.depth())
+            writer.append(0.0, self.solver.depth(), self.solver.bed)
         self.structures.record(self.solver)
         began = clock.perf_counter()
         for number in range(1, frames + 1):
@@ -121,7 +121,7 @@ class _Run:
             time = min(number * interval, until)
             self.solver.advance_to(time)
             for writer in writers:
-                writer.append(time, self.solver.depth())
+                writer.append(time, self.solver.depth(), self.solver.bed)
             self.structures.record(self.solver)
             self.smallest.look(self.solver)
             if on_frame is not None:

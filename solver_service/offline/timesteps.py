@@ -1,4 +1,8 @@
-"""Depth against time as NetCDF (CF-1.11) and Zarr v3, written frame by frame."""
+"""Depth and water level against time as NetCDF (CF-1.11) and Zarr v3, written frame by frame.
+
+The level is that of the ground of its time, so that level - depth is the bed wherever there is water, also
+where a breach or an edit has changed it since the start.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,7 @@ from solver_service.scenario import Case
 
 LOCAL = "local"
 DEPTH_NAME = "flood_water_thickness"
+LEVEL_NAME = "water_surface_height_above_reference_datum"
 NEVER = "seconds since 1970-01-01 00:00:00+00:00"
 
 
@@ -29,6 +34,7 @@ class TimestepFacts:
         licence: licence of the data.
         hypothetical: whether the event never happened.
         start_time: clock time of time 0, ISO 8601 with offset; None where it has none.
+        depth_wet: depth from which a cell has a water level [m].
     """
 
     grid: GridGeometry
@@ -38,19 +44,25 @@ class TimestepFacts:
     licence: str
     hypothetical: bool
     start_time: str | None
+    depth_wet: float
 
     @staticmethod
     def of(case: Case) -> TimestepFacts:
         """The facts of a case."""
         about = (case.title, case.source, case.licence, case.hypothetical, case.start_time)
-        return TimestepFacts(case.grid, case.z_b, *about)
+        return TimestepFacts(case.grid, case.z_b, *about, case.params.depth_dry)
+
+    def level(self, h: NDArray[np.float32], bed: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Elevation of the water [m], NaN where it is dry, for a depth and the bed of its time [m]."""
+        offset = np.float32(self.grid.datum_offset)
+        return np.where(h >= np.float32(self.depth_wet), (bed + h) + offset, np.float32(np.nan))
 
 
 class TimestepWriter(Protocol):
     """Takes the frames of a run in order."""
 
-    def append(self, time: float, h: NDArray[np.float32]) -> None:
-        """Add the depth [m] at a time [s]."""
+    def append(self, time: float, h: NDArray[np.float32], bed: NDArray[np.float32]) -> None:
+        """Add depth and bed [m, relative to grid.datum_offset] at a time [s]."""
 
     def close(self) -> None:
         """Finish the file."""
@@ -75,7 +87,7 @@ def _time_unit(facts: TimestepFacts) -> str:
 
 
 class NetcdfTimesteps:
-    """One NetCDF file: `depth(time, y, x)` and `bed(y, x)`, both from south to north."""
+    """One NetCDF file: `depth(time, y, x)`, `level(time, y, x)` and `bed(y, x)`, from south to north."""
 
     def __init__(self, path: Path, facts: TimestepFacts) -> None:
         """Begin the file.
@@ -86,7 +98,7 @@ class NetcdfTimesteps:
         """
         import netCDF4
 
-        grid = facts.grid
+        self._facts, grid = facts, facts.grid
         self._file: Any = netCDF4.Dataset(str(path), "w", format="NETCDF4")
         file = self._file
         file.Conventions = "CF-1.11"
@@ -107,18 +119,24 @@ class NetcdfTimesteps:
         chunks = (1, min(grid.nrows, 512), min(grid.ncols, 512))
         depth = file.createVariable("depth", "f4", ("time", "y", "x"), chunksizes=chunks, **packed)
         depth.units, depth.standard_name = "m", DEPTH_NAME
+        nan = np.float32(np.nan)
+        level = file.createVariable(
+            "level", "f4", ("time", "y", "x"), chunksizes=chunks, fill_value=nan, **packed
+        )
+        level.units, level.standard_name = "m", LEVEL_NAME
         bed = file.createVariable("bed", "f4", ("y", "x"), **packed)
         bed.units, bed.standard_name, bed.long_name = "m", "surface_altitude", "ground at the start"
         bed[:] = facts.bed + np.float32(grid.datum_offset)
-        for variable in (depth, bed):
+        for variable in (depth, level, bed):
             if wkt is not None:
                 variable.grid_mapping = "crs"
 
-    def append(self, time: float, h: NDArray[np.float32]) -> None:
-        """Add the depth [m] at a time [s]."""
+    def append(self, time: float, h: NDArray[np.float32], bed: NDArray[np.float32]) -> None:
+        """Add depth and bed [m, relative to grid.datum_offset] at a time [s]."""
         number = self._file.variables["time"].shape[0]
         self._file.variables["time"][number] = time
         self._file.variables["depth"][number] = h
+        self._file.variables["level"][number] = self._facts.level(h, bed)
 
     def close(self) -> None:
         """Finish the file."""
@@ -126,7 +144,7 @@ class NetcdfTimesteps:
 
 
 class ZarrTimesteps:
-    """One Zarr v3 group: `depth[time, y, x]`, `bed[y, x]`, `time`, `y`, `x`, from south to north."""
+    """One Zarr v3 group with the same: `depth`, `level`, `bed`, `time`, `y`, `x`, from south to north."""
 
     def __init__(self, path: Path, facts: TimestepFacts) -> None:
         """Begin the group.
@@ -137,7 +155,7 @@ class ZarrTimesteps:
         """
         import zarr
 
-        grid = facts.grid
+        self._facts, grid = facts, facts.grid
         self._times: list[float] = []
         self._group: Any = zarr.open_group(str(path), mode="w", zarr_format=3)
         group = self._group
@@ -150,14 +168,21 @@ class ZarrTimesteps:
                 "crs_wkt": _wkt(grid),
             }
         )
-        self._depth = group.create_array(
-            "depth",
-            shape=(0, *grid.shape),
-            chunks=(1, min(grid.nrows, 512), min(grid.ncols, 512)),
-            dtype="float32",
-            dimension_names=("time", "y", "x"),
-            attributes={"units": "m", "standard_name": DEPTH_NAME},
-        )
+        self._series = {
+            name: group.create_array(
+                name,
+                shape=(0, *grid.shape),
+                chunks=(1, min(grid.nrows, 512), min(grid.ncols, 512)),
+                dtype="float32",
+                fill_value=fill,
+                dimension_names=("time", "y", "x"),
+                attributes={"units": "m", "standard_name": standard_name},
+            )
+            for name, fill, standard_name in (
+                ("depth", 0.0, DEPTH_NAME),
+                ("level", float("nan"), LEVEL_NAME),
+            )
+        }
         bed = (facts.bed + np.float32(grid.datum_offset)).astype(np.float32)
         self._write("bed", bed, ("y", "x"), {"units": "m", "standard_name": "surface_altitude"})
         for name, values in zip("xy", _centres(grid), strict=True):
@@ -172,11 +197,12 @@ class ZarrTimesteps:
         )
         array[...] = values
 
-    def append(self, time: float, h: NDArray[np.float32]) -> None:
-        """Add the depth [m] at a time [s]."""
+    def append(self, time: float, h: NDArray[np.float32], bed: NDArray[np.float32]) -> None:
+        """Add depth and bed [m, relative to grid.datum_offset] at a time [s]."""
         self._times.append(time)
-        self._depth.resize((len(self._times), *h.shape))
-        self._depth[len(self._times) - 1] = h
+        for name, values in (("depth", h), ("level", self._facts.level(h, bed))):
+            self._series[name].resize((len(self._times), *h.shape))
+            self._series[name][len(self._times) - 1] = values
 
     def close(self) -> None:
         """Finish the group: the times."""

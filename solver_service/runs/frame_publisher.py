@@ -42,6 +42,7 @@ class QuantisedFrame:
         q: quantised depth, uint16 [nrows, ncols].
         states: block states, uint8 [block_rows, block_cols].
         scale: depth of one unit [m].
+        bed: cells that breaches have lowered, as row x ncols + col, rising, and their bed [m].
     """
 
     run: str
@@ -51,6 +52,7 @@ class QuantisedFrame:
     q: NDArray[np.uint16]
     states: NDArray[np.uint8]
     scale: float
+    bed: tuple[NDArray[np.int64], NDArray[np.float32]] | None = None
 
 
 class FramePublisher:
@@ -146,7 +148,9 @@ class FramePublisher:
     def _store(self, frame: QuantisedFrame, begun: float, waited: float, database: RunDatabase) -> None:
         encoder, writer = self._tools(frame, database)
         water = (frame.q, frame.states)
-        packed = encoder.encode(frame.run, frame.index, frame.time, frame.revision, water, scale=frame.scale)
+        packed = encoder.encode(
+            frame.run, frame.index, frame.time, frame.revision, water, scale=frame.scale, bed=frame.bed
+        )
         key_index = peek_frame(packed).key_index
         while True:
             try:

@@ -239,7 +239,9 @@ class RunLoop:
     def _publish(self, course: Course, computation: Computation, index: int) -> None:
         q, states, scale = course.grouping.quantise(index, computation.quantise, computation.depth_max)
         leg = course.begin.legs[-1]
-        frame = QuantisedFrame(leg.run, index, computation.solver.time, leg.revision, q, states, scale)
+        solver = computation.solver
+        bed = solver.breached_bed()
+        frame = QuantisedFrame(leg.run, index, solver.time, leg.revision, q, states, scale, bed)
         self._publisher.publish(frame)
 
     def _keep(self, course: Course, computation: Computation) -> None:

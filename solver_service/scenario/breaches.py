@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from protocol.limits import MAX_BED_CELLS
 from solver_service.numerics.breach import Breach
 from solver_service.numerics.snapping import face_chain
 from solver_service.scenario.inputs import Inputs
@@ -22,7 +23,8 @@ def read_breaches(tables: list[Table], inputs: Inputs) -> tuple[Breach, ...]:
     """Breaches in their order, each with an id.
 
     Raises:
-        CaseError: a key is not valid, the bottom lies above the crest, or two breaches share a cell.
+        CaseError: a key is not valid, the bottom lies above the crest, two breaches share a cell, or all
+            together may eat more cells than a frame can tell.
     """
     breaches: list[Breach] = []
     taken: dict[tuple[int, int], int] = {}
@@ -36,6 +38,12 @@ def read_breaches(tables: list[Table], inputs: Inputs) -> tuple[Breach, ...]:
                     f"it may eat cell (row {row}, column {col}), as number {other} may; lines further apart,"
                     " or a smaller width_final or across, are allowed",
                 )
+        if len(taken) > MAX_BED_CELLS:
+            raise table.wrong(
+                "line",
+                f"with those before it {len(taken)} cells may be eaten; up to {MAX_BED_CELLS} in all are"
+                " allowed",
+            )
         breaches.append(breach)
     return tuple(breaches)
 

@@ -44,17 +44,27 @@ def client(service: ServiceProcess, levee_case: Case) -> Iterator[ServiceClient]
         yield client
 
 
-def offline(case: Case, edit_at: int | None = None) -> Callable[[int, float], np.ndarray]:
-    """The quantised water of each output time of a run from scratch; the dike is drawn at a frame."""
+def offline(
+    case: Case, edit_at: int | None = None
+) -> tuple[Callable[[int, float], np.ndarray], list[np.ndarray]]:
+    """Quantised water and bed of each output time of a run from scratch; the dike is drawn at a frame."""
     solver = ShallowWaterSolver(case.model, case.params, "cpu")
     solver.set_water(case.initial_h)
-    depths = []
+    depths, beds = [], []
     for index in range(LAST + 1):
         solver.advance_to(index * case.output_interval)
         if index == edit_at:
             solver.replace_bed(apply_edits(case.z_b, [DIKE], case.grid).z_b)
         depths.append(solver.depth())
-    return lambda index, scale: protocol.quantise_depth(depths[index], scale, case.params.depth_dry)
+        beds.append(solver.bed)
+    return lambda index, scale: protocol.quantise_depth(depths[index], scale, case.params.depth_dry), beds
+
+
+def shown_bed(case: Case, edits: list[EditLine], frame: protocol.DecodedFrame) -> np.ndarray:
+    """The ground as a viewer knows it: base, edits, and what the frame says that breaches have lowered."""
+    bed = apply_edits(case.z_b, edits, case.grid).z_b.copy()
+    bed.flat[frame.bed_cells] = frame.bed_values
+    return bed
 
 
 def finish(client: ServiceClient, run: str) -> None:
@@ -77,9 +87,14 @@ def start(client: ServiceClient) -> str:
 
 
 def test_every_frame_is_that_of_the_solver_alone_bit_for_bit(client: ServiceClient, levee_case: Case) -> None:
-    expected = offline(levee_case)
+    expected, beds = offline(levee_case)
+    lowered = []
     for frame in frames(client, start(client), 0):
         np.testing.assert_array_equal(frame.q, expected(frame.index, frame.scale))
+        np.testing.assert_array_equal(shown_bed(levee_case, [], frame), beds[frame.index])
+        lowered.append(frame.bed_cells.size)
+    assert lowered[:5] == [0] * 5
+    assert lowered[-1] > 5
 
 
 @pytest.mark.parametrize("index", [BEFORE, AFTER])
@@ -90,10 +105,11 @@ def test_a_branch_before_or_in_the_breach_is_a_run_from_scratch_with_the_edit_th
     revision = client.do(protocol.AppendEdit, run=run, edit=DIKE)["revision"]
     child = str(client.do(protocol.Recalculate, run=run, index=index, revision=revision)["run"])
     finish(client, child)
-    expected, unedited = offline(levee_case, index), offline(levee_case)
+    (expected, beds), (unedited, bare) = offline(levee_case, index), offline(levee_case)
     branch = frames(client, child, index)
     for frame in branch:
         np.testing.assert_array_equal(frame.q, expected(frame.index, frame.scale))
+        np.testing.assert_array_equal(shown_bed(levee_case, [DIKE], frame), beds[frame.index])
     assert (branch[-1].q != unedited(LAST, branch[-1].scale)).any()
 
     revision = client.do(protocol.UndoEdit, run=run)["revision"]
@@ -101,3 +117,4 @@ def test_a_branch_before_or_in_the_breach_is_a_run_from_scratch_with_the_edit_th
     finish(client, undone)
     for frame in frames(client, undone, index):
         np.testing.assert_array_equal(frame.q, unedited(frame.index, frame.scale))
+        np.testing.assert_array_equal(shown_bed(levee_case, [], frame), bare[frame.index])

@@ -256,3 +256,27 @@ def test_frames_encoded_in_the_past_can_still_be_read() -> None:
         frame = unpack_frame(read_hex(f"compressed/{name}"))
         assert isinstance(frame, Frame)
         np.testing.assert_array_equal(decoder.decode(frame).q, expected + change * (expected > 0))
+
+
+def test_a_lowered_bed_comes_with_every_frame_and_a_frame_without_one_has_the_bytes_it_had() -> None:
+    bed = np.array([3, 700], np.int64), np.array([-1.5, 2.25], np.float32)
+    encoder, decoder = FrameEncoder(LAYOUT), FrameDecoder(LAYOUT)
+    for index in range(2):
+        data = encoder.encode("r", index, 0.0, 0, flood(index), scale=0.001, bed=bed)
+        decoded = decoder.decode(unpack_frame(data))
+        np.testing.assert_array_equal(decoded.bed_cells, bed[0])
+        np.testing.assert_array_equal(decoded.bed_values, bed[1])
+    none = np.zeros(0, np.int64), np.zeros(0, np.float32)
+    plain = FrameEncoder(LAYOUT).encode("r", 0, 0.0, 0, flood(0))
+    assert FrameEncoder(LAYOUT).encode("r", 0, 0.0, 0, flood(0), bed=none) == plain
+    assert b"bed_cells" not in plain
+
+
+def test_a_lowered_bed_that_was_changed_on_the_way_is_refused() -> None:
+    bed = np.array([3, 700], np.int64), np.array([-1.5, 2.25], np.float32)
+    frame = unpack_frame(FrameEncoder(LAYOUT).encode("r", 0, 0.0, 0, flood(0), bed=bed))
+    for field in ("bed_cells", "bed_values"):
+        changed = bytearray(getattr(frame, field))
+        changed[0] ^= 1
+        with pytest.raises(FrameError, match="checksum"):
+            FrameDecoder(LAYOUT).decode(msgspec.structs.replace(frame, **{field: bytes(changed)}))

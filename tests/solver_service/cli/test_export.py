@@ -21,6 +21,8 @@ LEVEE = EditLine(
     magnitude=4.0,
 )
 SCALE = 0.001
+BREACHED = np.array([7 * 50 + 8, 8 * 50 + 8], np.int64), np.array([-0.5, -0.25], np.float32)
+"""What a breach has lowered from frame 3 on."""
 
 
 def depth(run: str, index: int) -> np.ndarray:
@@ -59,7 +61,8 @@ def store(tmp_path: Path) -> Path:
         )
         writer, encoder = FrameWriter(folder, database, run), FrameEncoder(GRID, depth_wet=0.001)
         for index in range(branch, last + 1):
-            frame = encoder.encode(run, index, 5.0 * index, 0, depth(run, index), scale=SCALE)
+            bed = BREACHED if index >= 3 else None
+            frame = encoder.encode(run, index, 5.0 * index, 0, depth(run, index), scale=SCALE, bed=bed)
             key = branch
             writer.append(index=index, time=5.0 * index, revision=0, key_index=key, frame=frame)
         writer.close()
@@ -97,6 +100,13 @@ def test_a_branch_is_exported_with_the_past_of_its_parent(store: Path, tmp_path:
             np.testing.assert_allclose(file["depth"][index], expected, atol=SCALE)
         raised = apply_edits(BED, [LEVEE], GRID).z_b
         np.testing.assert_array_equal(file["bed"][:], raised + np.float32(100.0))
+        for index in range(6):
+            bed = (BED if index < 2 else raised).copy()
+            if index >= 3:
+                bed.flat[BREACHED[0]] = BREACHED[1]
+            h, level = file["depth"][index].filled(), file["level"][index].filled(np.nan)
+            np.testing.assert_array_equal(level[h > 0], (bed + h + np.float32(100.0))[h > 0])
+            assert np.isnan(level[h == 0]).all()
 
 
 def test_a_root_is_exported_as_zarr(store: Path, tmp_path: Path, fev_solver) -> None:

@@ -202,3 +202,32 @@ def test_a_split_run_with_an_edit_equals_the_whole_bit_for_bit(engine):
 def test_breaches_that_share_a_cell_are_refused():
     with pytest.raises(ModelError, match="'dyke' and 'second' both reach cell"):
         solver(BREACH, dataclasses.replace(BREACH, id="second", start_time=500.0))
+
+
+def test_the_breached_bed_is_what_a_breach_has_lowered_until_now_and_comes_back_with_a_snapshot():
+    s = solver(BREACH)
+    s.advance_to(9.9)
+    cells, bed = s.breached_bed()
+    assert cells.size == bed.size == 0
+    s.advance_to(40.0)
+    cells, bed = s.breached_bed()
+    now, before = s.bed.reshape(-1), levee_bed().reshape(-1)
+    assert np.array_equal(cells, np.flatnonzero(now < before))
+    assert cells.size > 5
+    assert np.array_equal(bed, now[cells])
+    restored = solver(BREACH)
+    restored.restore(s.snapshot())
+    for mine, theirs in zip(restored.breached_bed(), (cells, bed), strict=True):
+        assert np.array_equal(mine, theirs)
+    assert solver().breached_bed()[0].size == 0
+
+
+def test_the_breached_bed_of_an_edited_levee_is_told_against_the_edit():
+    s = solver(BREACH)
+    s.advance_to(40.0)
+    edited = levee_bed(6.0)
+    s.replace_bed(edited)
+    cells, bed = s.breached_bed()
+    whole = edited.reshape(-1).copy()
+    whole[cells] = bed
+    assert np.array_equal(whole.reshape(SHAPE), s.bed)

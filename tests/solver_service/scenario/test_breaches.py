@@ -91,3 +91,12 @@ def test_a_bad_breach_is_told(tmp_path: Path, table: str, message: str) -> None:
 
     assert "\n" not in str(caught.value)
     assert str(caught.value).startswith("case.toml: ")
+
+
+def test_more_cells_than_a_frame_can_tell_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    count = len(loaded(tmp_path, LINEAR, dam()).model.breaches[0].snapped((30, 40), 10.0).cells)
+    monkeypatch.setattr("solver_service.scenario.breaches.MAX_BED_CELLS", count - 1)
+    with pytest.raises(ServiceError, match=f"{count} cells may be eaten; up to {count - 1} in all"):
+        loaded(tmp_path, LINEAR, dam())
