@@ -3,8 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from datetime import datetime, timedelta
 
-__all__ = ["CaseRow", "EditRow", "EditSettings", "PointReadout", "RunRow", "ViewStatus", "time_text"]
+from viewer.units import METRIC, Units
+
+__all__ = [
+    "CaseRow",
+    "EditRow",
+    "EditSettings",
+    "PointReadout",
+    "RunRow",
+    "ViewStatus",
+    "clock_text",
+    "time_text",
+]
 
 
 def time_text(seconds: float) -> str:
@@ -13,6 +25,22 @@ def time_text(seconds: float) -> str:
     days, rest = divmod(whole, 86_400)
     clock = f"{rest // 3600:02d}:{rest % 3600 // 60:02d}:{rest % 60:02d}"
     return f"{days}d {clock}" if days else clock
+
+
+def clock_text(start_time: str | None, seconds: float) -> str:
+    """Return the clock time of a simulation time, in the zone of the case; empty where it has no clock.
+
+    Args:
+        start_time: clock time of time 0, ISO 8601 with offset, or None.
+        seconds: simulation time [s].
+    """
+    if start_time is None:
+        return ""
+    try:
+        clock = datetime.fromisoformat(start_time) + timedelta(seconds=seconds)
+    except (ValueError, OverflowError):
+        return ""  # a service of another version may write it otherwise; no clock is better than a wrong one
+    return clock.strftime("%Y-%m-%d %H:%M:%S %z").strip()
 
 
 @dataclass(frozen=True)
@@ -99,6 +127,10 @@ class ViewStatus:
         connection: one sentence about the connection.
         message: the newest notice, error or result, one sentence.
         time: playback time [s].
+        clock: clock time of the playback time in words, empty where the case has no clock.
+        data_age: since the service was last heard [s]; None when it never was.
+        revision: revision of the working list of edits.
+        units: units of everything written.
         computed_until: time of the newest frame of the shown run [s].
         branch_time: where the shown run left its parent [s], None when it has none.
         speed_x_real_time: simulated seconds per wall second of the computation.
@@ -118,6 +150,10 @@ class ViewStatus:
     hypothetical: bool = False
     has_terrain: bool = False
     time: float = 0.0
+    clock: str = ""
+    data_age: float | None = None
+    revision: int = 0
+    units: Units = METRIC
     computed_until: float = 0.0
     duration: float = 0.0
     output_interval: float = 0.0

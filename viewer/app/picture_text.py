@@ -10,7 +10,7 @@ from viewer.app.levee_watch import LeveeWatch, Overtopping
 from viewer.app.recalculation import Recalculation
 from viewer.app.shown_run import ShownRun
 from viewer.render import DrapedLine, EditOverlay, HudText, LineStyle
-from viewer.view_status import EditRow, PointReadout, time_text
+from viewer.view_status import EditRow, PointReadout, clock_text, time_text
 from viewer.world import EditMeasure, ProbeReading
 
 __all__ = ["edit_overlay", "edit_rows", "hud_text", "loss_notice", "readout"]
@@ -36,7 +36,7 @@ def hud_text(
         lines[-1] += f", first frame after {recalculated.first_frame_s:.2f} s"
     return HudText(
         title=info.title,
-        time=time_text(time),
+        time="   ".join(filter(None, (time_text(time), clock_text(info.start_time, time)))),
         detail="\n".join(lines),
         is_hypothetical=info.hypothetical,
         notice=notice,

@@ -12,7 +12,7 @@ from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
 from viewer.app.water_feed import WaterFeed
 from viewer.net import FrameLoader
-from viewer.view_status import PointReadout, ViewStatus
+from viewer.view_status import PointReadout, ViewStatus, clock_text
 from viewer.world import PlaybackClock, probe
 
 __all__ = ["depth_record", "point_readout", "program_status", "run_status"]
@@ -54,6 +54,8 @@ def run_status(
         title=info.title,
         hypothetical=info.hypothetical,
         has_terrain=True,
+        clock=clock_text(info.start_time, status.time),
+        revision=document.revision,
         computed_until=shown.computed_until,
         duration=info.duration,
         output_interval=info.output_interval,

@@ -7,6 +7,7 @@ import math
 
 from viewer.commands import CommandError
 from viewer.render import RenderOptions, WaterStyle
+from viewer.units import UNITS
 
 __all__ = ["OPTION_NAMES", "changed_options"]
 
@@ -27,7 +28,7 @@ _NUMBERS = {
     "light_azimuth_deg": (0.0, 360.0),
     "light_elevation_deg": (5.0, 90.0),
 }
-OPTION_NAMES = (*_SWITCHES, *_NUMBERS, "depth_classes")
+OPTION_NAMES = (*_SWITCHES, *_NUMBERS, "depth_classes", "units")
 
 
 def changed_options(options: RenderOptions, name: str, value: bool | float | str) -> RenderOptions:
@@ -39,6 +40,10 @@ def changed_options(options: RenderOptions, name: str, value: bool | float | str
     if name == "depth_classes" and isinstance(value, bool):
         style = WaterStyle.DEPTH_CLASSES if value else WaterStyle.NATURAL
         return dataclasses.replace(options, water_style=style)
+    if name == "units":
+        if isinstance(value, str) and value in UNITS:
+            return dataclasses.replace(options, units=UNITS[value])
+        raise CommandError(f"option units = {value!r} is not allowed; it must be {' or '.join(UNITS)}")
     if name in _SWITCHES and isinstance(value, bool):
         return dataclasses.replace(options, **{name: value})  # type: ignore[arg-type]
     if name in _NUMBERS and isinstance(value, (int, float)) and not isinstance(value, bool):

@@ -307,6 +307,10 @@ class ViewerApp:
         progress = self.desk.book.progress.get(shown.run)
         return hud_text(shown, self.clock.time, progress, self.recalculated, notice)
 
+    def _data_age(self) -> float | None:
+        age = self.desk.data_age(wall_clock.monotonic())
+        return None if age is None else float(int(age))  # whole seconds: a new status a second at most
+
     def _loss_notice(self) -> str:
         return loss_notice(self.desk.connection_sentence(), self.desk.data_age(wall_clock.monotonic()))
 
@@ -326,6 +330,7 @@ class ViewerApp:
 
     def _make_status(self) -> ViewStatus:
         status = program_status(self.desk, self.clock, self.control.editing.drawing, self.message)
+        status = dataclasses.replace(status, units=self.options.units, data_age=self._data_age())
         if self.shown is None:
             return status
         status = run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch)

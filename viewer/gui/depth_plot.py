@@ -43,7 +43,7 @@ class DepthPlot(QWidget):
         """Show the record of the probed point."""
         if status.probe is not None:
             place = f"x {status.probe.x:.0f}, y {status.probe.y:.0f}: "
-            self.caption.setText(place + readout_text(status.probe))
+            self.caption.setText(place + readout_text(status.probe, status.units))
         self.now.setPos(status.time / 60.0)
         if status.duration > 0.0:
             self.plot.setXRange(0.0, status.duration / 60.0, padding=0.02)

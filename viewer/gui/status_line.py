@@ -4,19 +4,34 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QLabel, QStatusBar, QWidget
 
-from viewer.view_status import PointReadout, ViewStatus
+from viewer.units import METRIC, Units
+from viewer.view_status import PointReadout, ViewStatus, time_text
 
-__all__ = ["StatusLine", "readout_text"]
+__all__ = ["StatusLine", "age_text", "readout_text"]
 
 
-def readout_text(readout: PointReadout | None) -> str:
+AGE_TOLD_S = 5.0
+"""A connected service that was heard within this time counts as present [s]."""
+
+
+def readout_text(readout: PointReadout | None, units: Units = METRIC) -> str:
     """Return depth, level and ground at a point in words."""
     if readout is None:
         return ""
-    ground = f"ground {readout.ground:.2f} m"
+    ground = f"ground {units.length_text(readout.ground)}"
     if readout.level is None:
         return f"dry, {ground}"
-    return f"depth {readout.depth:.2f} m, level {readout.level:.2f} m, {ground}"
+    depth, level = units.length_text(readout.depth), units.length_text(readout.level)
+    return f"depth {depth}, level {level}, {ground}"
+
+
+def age_text(status: ViewStatus) -> str:
+    """Return how old the data on the picture is, in words; empty before any came."""
+    if status.data_age is None:
+        return ""
+    if status.is_connected and status.data_age < AGE_TOLD_S:
+        return "data up to date"
+    return f"data {time_text(status.data_age)} old"
 
 
 class StatusLine(QStatusBar):
@@ -27,15 +42,21 @@ class StatusLine(QStatusBar):
         self.setSizeGripEnabled(False)
         self.message = self._label("Message", stretch=1)
         self.point = self._label("Under the pointer")
+        self.time = self._label("Model and clock time")
+        self.revision = self._label("Revision of the edits")
         self.computation = self._label("Computation")
         self.volume = self._label("Water volume error")
         self.rate = self._label("Pictures per second")
+        self.age = self._label("Age of the data")
         self.connection = self._label("Connection")
 
     def show_status(self, status: ViewStatus, frames_per_second: float) -> None:
         """Show the state."""
         self.message.setText(status.message)
-        self.point.setText(readout_text(status.hover))
+        self.point.setText(readout_text(status.hover, status.units))
+        self.time.setText(" ".join(filter(None, (time_text(status.time), status.clock))))
+        self.revision.setText(f"edits rev {status.revision}" if status.has_terrain else "")
+        self.age.setText(age_text(status))
         speed = status.speed_x_real_time
         self.computation.setText("" if speed is None else f"{speed:.0f} x real time")
         error = status.volume_error_relative

@@ -9,6 +9,7 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
+from viewer.units import METRIC, Units
 from viewer.world.camera import Camera
 
 __all__ = [
@@ -174,6 +175,8 @@ class RenderOptions:
 
     Below 1 for slow machines, 2 for smooth pictures; panels stay as sharp as they are.
     """
+    units: Units = METRIC
+    """Units of everything written on the picture."""
     background: tuple[float, float, float] = (0.62, 0.70, 0.80)
     """Colour behind everything where no sky is drawn."""
 

@@ -7,6 +7,7 @@ from functools import cache
 
 from PIL import Image, ImageDraw, ImageFont
 
+from viewer.units import METRIC, Units
 from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, depth_class_labels
 
 __all__ = [
@@ -150,18 +151,23 @@ def nice_length(longest: float) -> float:
     return next(power * k for k in (5.0, 2.0, 1.0) if power * k <= longest * (1.0 + 1e-9))
 
 
-def scale_panel(metres_per_pixel: float, bearing_deg: float, scale: float) -> Image.Image:
+def scale_panel(
+    metres_per_pixel: float, bearing_deg: float, scale: float, units: Units = METRIC
+) -> Image.Image:
     """A scale bar (true at the centre of the picture) and an arrow to the north.
 
     Args:
         metres_per_pixel: at the point that the camera looks at.
         bearing_deg: compass bearing of the view [degrees].
         scale: size of the panel, 1 for a picture 720 pixels high.
+        units: units of the label.
     """
     margin, longest = round(_MARGIN * scale), 150.0 * scale
-    length = nice_length(longest * metres_per_pixel)
-    pixels = round(length / metres_per_pixel)
-    label = f"{length / 1000:g} km" if length >= 1000.0 else f"{length:g} m"
+    reach = longest * metres_per_pixel
+    unit, sign = (units.far, units.far_sign) if reach >= units.far else (units.metre, units.length)
+    length = nice_length(reach / unit)
+    pixels = round(length * unit / metres_per_pixel)
+    label = f"{length:g} {sign}"
     width, height = round(longest + 70 * scale) + 2 * margin, round(58 * scale)
     image, draw = _plate(width, height)
     y = height - margin - round(4 * scale)

@@ -98,10 +98,8 @@ class HudPass:
             self._blit(texture, size, edge, size[1] - texture.height - edge - above)
             draws += 1
         if hud.scale_and_north:
-            metres, bearing = _scale_and_bearing(inputs.camera, size)
-            texture = self._panel(
-                "scale", (metres, bearing, scale), lambda: hud_panels.scale_panel(metres, bearing, scale)
-            )
+            says_where = (*_scale_and_bearing(inputs.camera, size), scale, inputs.options.units)
+            texture = self._panel("scale", says_where, lambda: hud_panels.scale_panel(*says_where))
             self._blit(texture, size, size[0] - texture.width - edge, size[1] - texture.height - edge)
             draws += 1
         return draws
