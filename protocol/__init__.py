@@ -25,6 +25,7 @@ from protocol.edits import (
 )
 from protocol.errors import (
     EditError,
+    ForcingError,
     FrameError,
     GridError,
     InvalidMessage,
@@ -37,6 +38,7 @@ from protocol.errors import (
     UnknownMessage,
     VersionMismatch,
 )
+from protocol.forcing import ForcingChange, ForcingItem, ForcingSeries, check_forcing
 from protocol.frame_codec import DecodedFrame, FrameDecoder, FrameEncoder, peek_frame
 from protocol.grid import GridGeometry
 from protocol.messages import (
@@ -45,6 +47,7 @@ from protocol.messages import (
     AppendEdits,
     CaseList,
     CaseSummary,
+    ChangeForcing,
     ClientMessage,
     Command,
     ControlChanged,
@@ -54,6 +57,7 @@ from protocol.messages import (
     DeleteRun,
     EditsChanged,
     Error,
+    ForcingChanged,
     Frame,
     FramePart,
     GetTerrain,
@@ -111,6 +115,7 @@ __all__ = [
     "BlockState",
     "CaseList",
     "CaseSummary",
+    "ChangeForcing",
     "ClientEvent",
     "ClientMessage",
     "ClientSession",
@@ -130,6 +135,11 @@ __all__ = [
     "EditedBed",
     "EditsChanged",
     "Error",
+    "ForcingChange",
+    "ForcingChanged",
+    "ForcingError",
+    "ForcingItem",
+    "ForcingSeries",
     "Frame",
     "FrameDecoder",
     "FrameEncoder",
@@ -190,6 +200,7 @@ __all__ = [
     "WireLimits",
     "apply_edits",
     "check_edit",
+    "check_forcing",
     "choose_depth_scale",
     "decode_terrain",
     "depth_error_bound",

@@ -11,6 +11,7 @@ ProtocolError
  +- Overloaded           overloaded            more unanswered commands than a peer may have
  +- GridError            invalid_grid          a grid geometry that cannot be
  +- EditError            invalid_edit          an edit that cannot be applied to this terrain
+ +- ForcingError         invalid_forcing       a change of forcing that the case has no place for
  +- FrameError           corrupt_frame         a frame or terrain that does not decode
      +- MissingKeyFrame  missing_key_frame     a delta whose key frame is not at hand
 ```
@@ -106,6 +107,14 @@ class EditError(ProtocolError):
     """An edit that cannot be applied to this terrain."""
 
     code = "invalid_edit"
+    close_code = 1008
+    fatal = False
+
+
+class ForcingError(ProtocolError):
+    """A change of forcing that the case has no place for, or that brings values beyond what is allowed."""
+
+    code = "invalid_forcing"
     close_code = 1008
     fatal = False
 

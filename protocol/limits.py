@@ -60,17 +60,14 @@ MAX_EDITS = 1024
 MAX_LOG_VERTICES = 32_768
 """Most vertices of all edits in the working list of a run."""
 
-MAX_EDIT_WORK = 1 << 22
-"""Most cells (for an area: crossings of sides and rows) that the raster of one edit may look at."""
-
 MAX_HISTORY_VERTICES = 1 << 18
 """Most vertices of all changes of a working list that can be undone or redone; the oldest are forgotten."""
 
 MAX_EDITS_AT_ONCE = 128
 """Most edits of one `append_edits`."""
 
-MAX_PENDING_COMMANDS = 64
-"""Most commands a client may have unanswered."""
+MAX_EDIT_WORK = 1 << 22
+"""Most cells (for an area: crossings of sides and rows) that the raster of one edit may look at."""
 
 MAX_FORCING_ITEMS = 256
 """Most items of forcing of a case that a client is told of and may change."""
@@ -83,6 +80,9 @@ MAX_FORCING_POINTS = 4096
 
 MAX_ITEM_POINTS = 256
 """Most entries of the case's own series of one item; longer ones are thinned."""
+
+MAX_PENDING_COMMANDS = 64
+"""Most commands a client may have unanswered."""
 
 DEFAULT_CREDIT = 2
 """Frames a new subscription may be sent before the first `credit`."""

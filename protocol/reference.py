@@ -21,6 +21,7 @@ from msgspec import inspect as types
 from protocol import errors, limits
 from protocol.codec import operation
 from protocol.edits.model import EditArea, EditLine
+from protocol.forcing import ForcingChange, ForcingItem, ForcingSeries
 from protocol.messages import (
     CaseSummary,
     ClientMessage,
@@ -43,6 +44,9 @@ RECORDS: tuple[type[WireStruct], ...] = (
     LineageEntry,
     EditLine,
     EditArea,
+    ForcingItem,
+    ForcingChange,
+    ForcingSeries,
 )
 
 

@@ -20,6 +20,7 @@ from protocol.messages.edits import (
     UndoEdit,
 )
 from protocol.messages.flow import Credit, Seek, Subscribe, SubscriptionMode, Unsubscribe
+from protocol.messages.forcing import ChangeForcing, ForcingChanged
 from protocol.messages.frames import Frame, FramePart
 from protocol.messages.handshake import Hello, ResumePoint, Welcome, WireLimits
 from protocol.messages.runs import (
@@ -64,6 +65,7 @@ ClientMessage = (
     | DeleteEdit
     | UndoEdit
     | RedoEdit
+    | ChangeForcing
     | Recalculate
     | RenameRun
     | PinRun
@@ -83,6 +85,7 @@ ServerMessage = (
     | RunBranched
     | Terrain
     | EditsChanged
+    | ForcingChanged
     | Frame
     | FramePart
     | Progress
@@ -99,6 +102,7 @@ __all__ = [
     "AppendEdits",
     "CaseList",
     "CaseSummary",
+    "ChangeForcing",
     "ClientMessage",
     "Command",
     "ControlChanged",
@@ -108,6 +112,7 @@ __all__ = [
     "DeleteRun",
     "EditsChanged",
     "Error",
+    "ForcingChanged",
     "Frame",
     "FramePart",
     "GetTerrain",

@@ -37,7 +37,8 @@ class Hello(Message, frozen=True):
         versions: every version the client can speak.
         client: name and version of the client program, for logs.
         token: access token, when it was not in the Authorization header.
-        resume: what the client last knew; `run_changed` and `edits_changed` of that run follow the welcome.
+        resume: what the client last knew; `run_changed`, `edits_changed` and `forcing_changed` of that run
+            follow the welcome.
         capabilities: what the client can do; unknown names are ignored.
     """
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from msgspec import Meta
 
@@ -22,9 +22,11 @@ from protocol.fields import (
     Text,
     WireStruct,
 )
+from protocol.forcing import ForcingChange
 from protocol.grid import GridGeometry
-from protocol.limits import MAX_CELLS
+from protocol.limits import MAX_CELLS, MAX_FORCING_CHANGES
 
+Forcing = Annotated[tuple[ForcingChange, ...], Meta(max_length=MAX_FORCING_CHANGES)]
 RunStatus = Literal["starting", "running", "paused", "finished", "stopped", "failed"]
 
 
@@ -41,13 +43,17 @@ class StartRun(Command, frozen=True):
         output_interval: time between frames [s], or none for the case's own.
         device: "auto", "cpu" or "cuda:N".
         paused: whether to stop after the frame at time 0.
+        forcing: how its forcing differs from the case, from time 0 on.
     """
+
+    left_out: ClassVar[tuple[str, ...]] = ("forcing",)
 
     case: Name
     duration: Positive | None = None
     output_interval: Positive | None = None
     device: Annotated[str, Meta(pattern=r"^(auto|cpu|cuda(:[0-9]{1,3})?)\Z")] = "auto"
     paused: bool = False
+    forcing: Forcing = ()
 
 
 class PauseRun(Command, frozen=True):
@@ -123,7 +129,7 @@ class DeleteRun(Command, frozen=True):
 
 
 class Recalculate(Command, frozen=True):
-    """Branch a run at a frame with the working list of edits as its terrain.
+    """Branch a run at a frame with the working list of edits as its terrain and its working forcing.
 
     The `ack` has result.run, the child's id; `run_changed` of the child follows, and the requester's
     subscription goes on with the child from the branch index. Other clients get `run_branched` and stay.
@@ -133,12 +139,17 @@ class Recalculate(Command, frozen=True):
         index: frame index to branch at: the last frame at or before the playback time.
         revision: revision of the working list that is meant; refused when the list has moved on.
         keep_parent: whether the parent goes on computing (else it pauses).
+        forcing_revision: revision of the working forcing that is meant; refused when it has moved on, nil for
+            the newest.
     """
+
+    left_out: ClassVar[tuple[str, ...]] = ("forcing_revision",)
 
     run: Identifier
     index: FrameIndex
     revision: Revision
     keep_parent: bool = False
+    forcing_revision: Revision | None = None
 
 
 class GridInfo(WireStruct, frozen=True):
@@ -236,7 +247,10 @@ class RunInfo(WireStruct, frozen=True):
         message: why it failed or stopped.
         label: the name that people gave it.
         pinned: whether it is kept whatever the budget of the store.
+        forcing_revision: revision of its working forcing.
     """
+
+    left_out: ClassVar[tuple[str, ...]] = ("forcing_revision",)
 
     run: Identifier
     case: Name
@@ -259,6 +273,7 @@ class RunInfo(WireStruct, frozen=True):
     message: Text = ""
     label: Name = ""
     pinned: bool = False
+    forcing_revision: Revision = 0
 
 
 class RunList(Message, frozen=True):

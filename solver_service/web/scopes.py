@@ -7,6 +7,7 @@ from enum import IntEnum
 from protocol import (
     AppendEdit,
     AppendEdits,
+    ChangeForcing,
     Command,
     DeleteEdit,
     DeleteRun,
@@ -65,6 +66,7 @@ COMMAND_SCOPES: dict[type[Command], Scope] = {
     DeleteEdit: Scope.CONTROLLER,
     UndoEdit: Scope.CONTROLLER,
     RedoEdit: Scope.CONTROLLER,
+    ChangeForcing: Scope.CONTROLLER,
     Recalculate: Scope.CONTROLLER,
     TakeControl: Scope.CONTROLLER,
     ReleaseControl: Scope.CONTROLLER,

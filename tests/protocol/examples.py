@@ -85,6 +85,22 @@ CASE = p.CaseSummary(
     licence="public domain",
 )
 
+CHANGES = (
+    p.ForcingChange("spring", factor=1.5),
+    p.ForcingChange("west-1", series=p.ForcingSeries((0.0, 600.0), (20.0, 35.5))),
+    p.ForcingChange("sea", offset=0.5),
+    p.ForcingChange("dam", start_time=900.0),
+    p.ForcingChange("dike", start_time="never"),
+)
+ITEMS = (
+    p.ForcingItem("spring", "source", "m3/s", 0.0, 1e4, p.ForcingSeries((0.0,), (19.75,))),
+    p.ForcingItem("west-1", "discharge", "m3/s", -1e4, 1e4, p.ForcingSeries((0.0, 60.0), (0.0, 12.5))),
+    p.ForcingItem("sea", "stage", "m", -100.0, 100.0, p.ForcingSeries((0.0,), (2.5,))),
+    p.ForcingItem("rain", "rain", "mm/h", 0.0, 1e4),
+    p.ForcingItem("dam", "breach", "s", start_time=300.0),
+    p.ForcingItem("dike", "breach", "s", start_time=0.0, overtopping=True),
+)
+
 CLIENT_EXAMPLES: dict[str, Message] = {
     "hello": p.Hello(client="test 1.0", versions=("fev.v1",), capabilities=("depth", "edits")),
     "hello-resume": p.Hello(
@@ -114,6 +130,9 @@ CLIENT_EXAMPLES: dict[str, Message] = {
     "undo_edit": p.UndoEdit(13, "r-1"),
     "redo_edit": p.RedoEdit(14, "r-1"),
     "recalculate": p.Recalculate(15, "r-1", 7, 1),
+    "start_run-forcing": p.StartRun(3, "jacksboro", forcing=CHANGES[:1]),
+    "change_forcing": p.ChangeForcing(27, "r-1", CHANGES),
+    "recalculate-forcing": p.Recalculate(28, "r-1", 7, 1, False, 2),
     "rename_run": p.RenameRun(16, "r-1", "with the levee"),
     "pin_run": p.PinRun(17, "r-1"),
     "unpin_run": p.UnpinRun(18, "r-1"),
@@ -177,6 +196,7 @@ SERVER_EXAMPLES: dict[str, Message] = {
         structures={"pump": -50.0},
         moved={"culvert": 12.5},
     ),
+    "forcing_changed": p.ForcingChanged("r-1", 2, CHANGES, CHANGES[:1], ITEMS),
     "run_removed": p.RunRemoved("r-2"),
     "control_changed": p.ControlChanged("r-1", "c0ffee", "fev-viewer 0.1.0"),
     "control_requested": p.ControlRequested("r-1", "decaf", "fev-viewer 0.1.0"),
