@@ -18,7 +18,19 @@ from pathlib import Path
 from bench.machine import load, machine
 
 FOLDER = Path(__file__).parent
-NOT_BENCHES = {"__init__", "__main__", "cubin", "floods", "machine", "service_process", "viewer_scenes"}
+NOT_BENCHES = {
+    "__init__",
+    "__main__",
+    "crowd",
+    "cubin",
+    "floods",
+    "loop_lag",
+    "machine",
+    "service_process",
+    "shaped_link",
+    "slosh",
+    "viewer_scenes",
+}
 
 
 def names() -> list[str]:

@@ -79,14 +79,17 @@ class ServiceProcess:
         self.process.wait(timeout_s)
         return time.perf_counter() - begun
 
-    def status(self) -> dict[str, Any]:
-        """What the service tells of itself."""
+    def get(self, path: str) -> Any:
+        """What a REST path answers, from JSON."""
         request = urllib.request.Request(
-            f"{self.http}/v1/status", headers={"Authorization": f"Bearer {self.token}"}
+            f"{self.http}{path}", headers={"Authorization": f"Bearer {self.token}"}
         )
         with urllib.request.urlopen(request, timeout=TIMEOUT_S) as answer:
-            found: dict[str, Any] = json.load(answer)
-        return found
+            return json.load(answer)
+
+    def status(self) -> dict[str, Any]:
+        """What the service tells of itself."""
+        return dict(self.get("/v1/status"))
 
     def _close(self) -> None:
         try:

@@ -15,6 +15,7 @@ import numpy as np
 
 import protocol
 from bench.service_process import ServiceClient, ServiceProcess
+from bench.slosh import write_slosh_case
 from protocol import BlockLayout
 
 FULL = (1949, 2113)
@@ -31,7 +32,7 @@ def figures(smoke: bool) -> Iterator[dict[str, object]]:
     frames = SMOKE_FRAMES if smoke else FRAMES
     seconds = 1.0 if smoke else 60.0
     with tempfile.TemporaryDirectory(prefix="fev-bench-") as folder:
-        case = _write_case(Path(folder) / "slosh", nrows, ncols, frames)
+        case = write_slosh_case(Path(folder) / "slosh", nrows, ncols, INTERVAL * frames, INTERVAL)
         with ServiceProcess(Path(folder) / "data", cases=[str(case)]) as service:
             with ServiceClient(service) as client:
                 run = str(client.do(protocol.StartRun, case=str(case))["run"])
@@ -93,38 +94,3 @@ def _finished(run: str) -> Callable[[object], bool]:
         )
 
     return test
-
-
-def _write_case(folder: Path, nrows: int, ncols: int, frames: int) -> Path:
-    folder.mkdir()
-    dx = 10.0
-    y, x = np.mgrid[0:nrows, 0:ncols] * dx
-    valley = 40.0 * np.abs(x / (ncols * dx) - 0.5) * 2.0 + 3.0 * np.sin(x / 310.0) * np.cos(y / 270.0)
-    tilt = 4.0 * (y / (nrows * dx) - 0.5)
-    depth = np.maximum(0.0, 15.2 + tilt - valley)
-    np.savez(folder / "terrain.npz", bed=valley.astype(np.float32), depth=depth.astype(np.float32))
-    (folder / "case.toml").write_text(
-        f"""
-[case]
-name = "slosh"
-title = "A lake that sloshes"
-hypothetical = true
-crs = "local"
-source = "made by the bench"
-licence = "Apache-2.0"
-[terrain]
-dem = "terrain.npz"
-key = "bed"
-cell_size = {dx}
-[roughness]
-manning_n = 0.03
-[initial]
-depth = "terrain.npz"
-depth_key = "depth"
-[run]
-duration = {INTERVAL * frames}
-output_interval = {INTERVAL}
-""",
-        encoding="utf-8",
-    )
-    return folder
