@@ -39,12 +39,13 @@ class CaseReport:
     figures: dict[str, float | int | str] = field(default_factory=dict)
 
 
-def check_case(case: Case, device: str = "auto") -> CaseReport:
+def check_case(case: Case, device: str = "auto", probe_s: float = PROBE_S) -> CaseReport:
     """Look at a case and try its solver for two seconds.
 
     Args:
         case: the case.
         device: where it would run.
+        probe_s: wall time for which the solver is tried [s].
 
     Raises:
         ServiceError: the device is absent, or the run blows up at once.
@@ -55,7 +56,7 @@ def check_case(case: Case, device: str = "auto") -> CaseReport:
     _look_at_structures(case, report)
     chosen = pick_device(device)
     _look_at_memory(case, chosen, report)
-    _try_solver(case, chosen, report)
+    _try_solver(case, chosen, report, probe_s)
     return report
 
 
@@ -192,12 +193,12 @@ def _size(nbytes: int) -> str:
     return f"{nbytes / 2**30:.1f} GiB" if nbytes >= 2**30 else f"{nbytes / 2**20:.1f} MiB"
 
 
-def _try_solver(case: Case, device: str, report: CaseReport) -> None:
+def _try_solver(case: Case, device: str, report: CaseReport, probe_s: float) -> None:
     solver = ShallowWaterSolver(case.model, case.params, device)
     solver.set_water(case.initial_h)
     solver.advance_to(min(1e-3, case.duration))
     began, start = clock.perf_counter(), solver.time
-    solver.advance_to(case.duration, lambda: clock.perf_counter() - began > PROBE_S)
+    solver.advance_to(case.duration, lambda: clock.perf_counter() - began > probe_s)
     wall, simulated = clock.perf_counter() - began, solver.time - start
     estimate = wall * case.duration / simulated if simulated > 0.0 else float("inf")
     report.facts.append(

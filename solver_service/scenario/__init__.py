@@ -2,7 +2,7 @@
 
 from solver_service.scenario.case import Case, DemoScript, Gauge
 from solver_service.scenario.case_folder import CaseFolder, open_case
-from solver_service.scenario.catalogue import case_summary, list_cases, load_case
+from solver_service.scenario.catalogue import case_summary, list_cases, load_case, summary_of
 
 __all__ = [
     "Case",
@@ -13,4 +13,5 @@ __all__ = [
     "list_cases",
     "load_case",
     "open_case",
+    "summary_of",
 ]

@@ -70,6 +70,22 @@ def case_summary(name: str | Path) -> CaseSummary:
         )
 
 
+def summary_of(case: Case) -> CaseSummary:
+    """A loaded case in a few words."""
+    return CaseSummary(
+        name=case.name,
+        title=case.title,
+        hypothetical=case.hypothetical,
+        nrows=case.grid.nrows,
+        ncols=case.grid.ncols,
+        dx=case.grid.dx,
+        duration=case.duration,
+        output_interval=case.output_interval,
+        source=case.source,
+        licence=case.licence,
+    )
+
+
 def _data_home() -> Path | None:
     home = os.environ.get("FEV_DATA_HOME")
     return Path(home) if home and Path(home).is_dir() else None

@@ -1,6 +1,7 @@
 """What the service keeps on disk. A frame or checkpoint exists only when its row does."""
 
 from solver_service.store.backup import back_up
+from solver_service.store.case_shelf import CaseShelf, ShelvedCase
 from solver_service.store.checkpoint_store import CheckpointStore, StoredState, remove_checkpoint
 from solver_service.store.compaction import compact_run, is_scattered
 from solver_service.store.data_folder import DataFolder, default_data_dir
@@ -21,6 +22,7 @@ from solver_service.store.run_database import RunDatabase
 from solver_service.store.terrain_files import load_bed, save_bed
 
 __all__ = [
+    "CaseShelf",
     "CheckpointRecord",
     "CheckpointStore",
     "DataFolder",
@@ -34,6 +36,7 @@ __all__ = [
     "RunDatabase",
     "RunEvent",
     "RunRecord",
+    "ShelvedCase",
     "StoredRun",
     "StoredState",
     "back_up",

@@ -2,7 +2,8 @@
 
 The rows are copied first, by SQLite's own online backup, as they are at one moment; then the files that they
 name. Segment files only grow, so what a row names stays where it is; where a run was deleted, compacted or
-relieved of a checkpoint meanwhile, the rows are copied once more. The copy is checked before it counts.
+relieved of a checkpoint meanwhile, the rows are copied once more. Uploaded cases are copied, too. The copy is
+checked before it counts.
 """
 
 from __future__ import annotations
@@ -70,6 +71,7 @@ def _copy(folder: DataFolder, destination: Path) -> int:
             raise StoreError(f"store {folder.root} changes too fast to be copied: {missing} is gone again")
     finally:
         source.close()
+    _copy_cases(folder, copy)
     if faults:
         raise StoreError(f"the copy of store {folder.root} is not whole: {faults[0]}")
     for path in _files(destination):
@@ -104,6 +106,18 @@ def _copy_files(folder: DataFolder, copy: DataFolder, rows: RunDatabase) -> str:
         if path.name not in known:
             shutil.rmtree(path)
     return ""
+
+
+def _copy_cases(folder: DataFolder, copy: DataFolder) -> None:
+    """Copy the uploaded cases; one that is removed meanwhile has no run, and is left out."""
+    for path in sorted((folder.root / "cases").iterdir()):
+        target = copy.case(path.name)
+        try:
+            shutil.copytree(path, target)
+        except (FileNotFoundError, shutil.Error):
+            shutil.rmtree(target, ignore_errors=True)
+            if path.exists():
+                raise
 
 
 def _copy_head(source: Path, target: Path, size: int) -> bool:

@@ -5,6 +5,8 @@
 <data-dir>/frames/<run>/    segment files with packed frames, append-only
 <data-dir>/checkpoints/<run>/  one Zarr group per full-precision state
 <data-dir>/terrain/         base beds, named by their fingerprint
+<data-dir>/cases/<name>/    uploaded cases
+<data-dir>/uploads/<id>/    uploads on their way; empty when no service runs
 """
 
 from __future__ import annotations
@@ -58,8 +60,8 @@ class DataFolder:
         """
         self.root = root
         try:
-            for folder in (root, root / "frames", root / "checkpoints", root / "terrain"):
-                folder.mkdir(parents=True, exist_ok=True)
+            for name in ("frames", "checkpoints", "terrain", "cases", "uploads"):
+                (root / name).mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise StoreError(f"data folder {root} cannot be used: {error.strerror or error}") from error
         self._lock: _FileLock | None = None
@@ -80,6 +82,14 @@ class DataFolder:
     def terrain(self, fingerprint: str) -> Path:
         """File of a base bed."""
         return self.root / "terrain" / f"{_checked(fingerprint)}.zst"
+
+    def case(self, name: str) -> Path:
+        """Folder of an uploaded case."""
+        return self.root / "cases" / _checked(name)
+
+    def upload(self, upload: str) -> Path:
+        """Folder of an upload on its way."""
+        return self.root / "uploads" / _checked(upload)
 
     def lock(self) -> None:
         """Take the folder for this process until `unlock` or the end of the process.
@@ -104,6 +114,8 @@ class DataFolder:
             shutil.rmtree(folder, ignore_errors=True)
         for file in (self.root / "terrain").glob("*.writing"):
             file.unlink(missing_ok=True)
+        for folder in (self.root / "uploads").iterdir():
+            shutil.rmtree(folder, ignore_errors=True)
 
     def __enter__(self) -> DataFolder:
         """Lock on entry."""
