@@ -51,10 +51,11 @@ def block_errors(z: Array, tiling: BlockTiling) -> Array:
     Returns:
         errors [m], shape [level_count, block_rows, block_cols].
     """
+    z, tiling = tiling.fitted(z), tiling.drawn
     errors = np.zeros((tiling.level_count, tiling.block_rows, tiling.block_cols), dtype=np.float32)
 
     def fill(level: int) -> None:
-        errors[level] = tiling.reduce(np.maximum, np.abs(_coarse_surface(z, tiling, level) - z))
+        errors[level] = tiling.reduce(np.maximum, np.abs(_coarse_surface(z, level) - z))
 
     # NumPy lets go of the interpreter lock in these loops, so the levels share the cores.
     with ThreadPoolExecutor(max_workers=2) as pool:
@@ -62,10 +63,10 @@ def block_errors(z: Array, tiling: BlockTiling) -> Array:
     return errors
 
 
-def _coarse_surface(z: Array, tiling: BlockTiling, level: int) -> Array:
-    """The triangles of one level of all blocks, seen at every grid vertex, shape [nrows, ncols]."""
-    row0, row1, t = _brackets(tiling.nrows, level)
-    col0, col1, s = _brackets(tiling.ncols, level)
+def _coarse_surface(z: Array, level: int) -> Array:
+    """The triangles of one level of all blocks, seen at every vertex drawn, of the shape of z."""
+    row0, row1, t = _brackets(z.shape[0], level)
+    col0, col1, s = _brackets(z.shape[1], level)
     # Along each kept row first, so that only two gathers of full width remain.
     south_west, south_east = z[np.ix_(row0, col0)], z[np.ix_(row0, col1)]
     north_west, north_east = z[np.ix_(row1, col0)], z[np.ix_(row1, col1)]

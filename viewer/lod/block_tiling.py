@@ -1,20 +1,36 @@
 """How a raster is cut into level-of-detail blocks of (2^n + 1)^2 vertices that share their edges.
 
-Edge blocks may be ragged: an index past the last row or column is clamped to it, so a raster of any size is
-covered and triangles past the border have no area.
+A raster whose size fits no blocks has ragged ones at its north and east border, or is trimmed or padded as
+in the FEV frontend (Sharrow 2011, section 3.1.3).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["BlockTiling", "classify_blocks"]
+__all__ = ["BLOCK_SIZES", "BlockTiling", "Border", "classify_blocks"]
 
 BLOCK_SIZES = (17, 33, 65)
+
+_Scalar = TypeVar("_Scalar", bound=np.generic)
+
+
+class Border(Enum):
+    """What is done with rows and columns that fill no whole block."""
+
+    RAGGED = "ragged"
+    """A vertex past the border is moved onto it: all cells are drawn, triangles past the border have no
+    area."""
+    TRIM = "trim"
+    """They are not drawn; a raster smaller than one block stays whole."""
+    PAD = "pad"
+    """Whole blocks are drawn, with level ground past the border that is marked as no data."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +42,12 @@ class BlockTiling:
     """
 
     nrows: int
+    """Rows of the raster."""
     ncols: int
+    """Columns of the raster."""
     block_size: int = 33
     """Vertices along a block's side."""
+    border: Border = Border.RAGGED
 
     def __post_init__(self) -> None:
         """Check the sizes."""
@@ -52,17 +71,32 @@ class BlockTiling:
     @property
     def block_rows(self) -> int:
         """Blocks from south to north."""
-        return max(1, -(-(self.nrows - 1) // self.stride))
+        return self._blocks_along(self.nrows)
 
     @property
     def block_cols(self) -> int:
         """Blocks from west to east."""
-        return max(1, -(-(self.ncols - 1) // self.stride))
+        return self._blocks_along(self.ncols)
 
     @property
     def block_count(self) -> int:
         """Blocks in all."""
         return self.block_rows * self.block_cols
+
+    @property
+    def drawn_rows(self) -> int:
+        """Rows of vertices that the blocks draw: fewer than the raster's where trimmed, more where padded."""
+        return self._drawn_along(self.nrows)
+
+    @property
+    def drawn_cols(self) -> int:
+        """Columns of vertices that the blocks draw."""
+        return self._drawn_along(self.ncols)
+
+    @cached_property
+    def drawn(self) -> BlockTiling:
+        """The same blocks over the raster as it is drawn."""
+        return BlockTiling(self.drawn_rows, self.drawn_cols, self.block_size)
 
     @cached_property
     def row_start(self) -> npt.NDArray[np.int64]:
@@ -72,7 +106,7 @@ class BlockTiling:
     @cached_property
     def row_end(self) -> npt.NDArray[np.int64]:
         """Last vertex row of each block row (shared with the next block)."""
-        return np.minimum(self.row_start + self.stride, self.nrows - 1)
+        return np.minimum(self.row_start + self.stride, self.drawn_rows - 1)
 
     @cached_property
     def col_start(self) -> npt.NDArray[np.int64]:
@@ -82,7 +116,7 @@ class BlockTiling:
     @cached_property
     def col_end(self) -> npt.NDArray[np.int64]:
         """Last vertex column of each block column (shared with the next block)."""
-        return np.minimum(self.col_start + self.stride, self.ncols - 1)
+        return np.minimum(self.col_start + self.stride, self.drawn_cols - 1)
 
     @cached_property
     def triangle_counts(self) -> npt.NDArray[np.int64]:
@@ -98,7 +132,20 @@ class BlockTiling:
             counts.append((2 * rows[:, None] * cols[None, :]).ravel())
         return np.stack(counts)
 
-    def reduce(self, ufunc: np.ufunc, values: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+    def fitted(self, values: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:
+        """The raster as the blocks draw it: cut off where trimmed, its last values repeated where padded.
+
+        Args:
+            values: shape [nrows, ncols].
+
+        Returns:
+            shape [drawn_rows, drawn_cols]; the same array where nothing changes.
+        """
+        part = values[: self.drawn_rows, : self.drawn_cols]
+        more = (self.drawn_rows - part.shape[0], self.drawn_cols - part.shape[1])
+        return np.pad(part, ((0, more[0]), (0, more[1])), mode="edge") if any(more) else part
+
+    def reduce(self, ufunc: np.ufunc, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
         """Reduce an array over the vertices of each block, shared edges included.
 
         Args:
@@ -108,6 +155,7 @@ class BlockTiling:
         Returns:
             shape [block_rows, block_cols].
         """
+        values = self.fitted(values)
         by_row = ufunc(ufunc.reduceat(values, self.row_start, axis=0), values[self.row_end])
         return np.asarray(ufunc(ufunc.reduceat(by_row, self.col_start, axis=1), by_row[:, self.col_end]))
 
@@ -128,6 +176,14 @@ class BlockTiling:
             min(self.block_rows, (row1 - 1) // self.stride + 1),
             min(self.block_cols, (col1 - 1) // self.stride + 1),
         )
+
+    def _blocks_along(self, count: int) -> int:
+        whole, rest = divmod(count - 1, self.stride)
+        return max(1, whole if self.border is Border.TRIM or not rest else whole + 1)
+
+    def _drawn_along(self, count: int) -> int:
+        reach = self._blocks_along(count) * self.stride + 1
+        return reach if self.border is Border.PAD else min(reach, count)
 
 
 def classify_blocks(h: npt.NDArray[np.float32], tiling: BlockTiling) -> npt.NDArray[np.uint8]:

@@ -38,6 +38,7 @@ def edge_errors(z: Array, tiling: BlockTiling, errors: Array) -> Array:
     Returns:
         charges [m], shape [level_count, block_rows, block_cols].
     """
+    z, tiling = tiling.fitted(z), tiling.drawn
     monotone = np.maximum.accumulate(errors, axis=0)
     turned = BlockTiling(tiling.ncols, tiling.nrows, tiling.block_size)
     across, along = np.ascontiguousarray(z.T), np.ascontiguousarray(z)

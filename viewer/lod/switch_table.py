@@ -98,20 +98,26 @@ class SwitchTable:
         return self._monotone * np.float32(pixel_scale / tau_px)
 
     def levels(
-        self, distance: Array, pixel_scale: float, tau_px: float, distance_beside: Array | None = None
+        self,
+        distance: Array,
+        pixel_scale: float,
+        tau_px: float,
+        distance_beside: Array | None = None,
+        at: slice | npt.NDArray[np.int64] = slice(None),
     ) -> npt.NDArray[np.uint8]:
         """The coarsest level that each block may use.
 
         Args:
-            distance: from the eye to the nearest point of each block's box [m], shape [block_count].
+            distance: from the eye to the nearest point of each block's box [m], shape [n].
             pixel_scale: as in `distances`.
             tau_px: as in `distances`.
             distance_beside: the least distance of the block and those beside it [m]; None takes `distance`.
+            at: the blocks asked for, all or n of them.
         """
         per_metre = np.float32(tau_px / pixel_scale)
         allowed = distance * per_metre
         beside = allowed if distance_beside is None else distance_beside * per_metre
         level = np.zeros(distance.shape, dtype=np.uint8)
         for errors, charges in zip(self._monotone[1:], self._charges[1:], strict=True):
-            level += (errors <= allowed) & (charges <= beside)
+            level += (errors[at] <= allowed) & (charges[at] <= beside)
         return level

@@ -41,12 +41,14 @@ class TerrainLod:
         """Redo the errors and bounds of the blocks that hold a vertex of a rectangle of cells."""
         tiling = self.tiling
         first_row, first_col, end_row, end_col = tiling.blocks_touching(dirty)
+        if first_row >= end_row or first_col >= end_col:
+            return
         # Charges go across edges: redo one ring more, and read two, of which the outer one comes out wrong.
         redone = _grown((first_row, first_col, end_row, end_col), 1, tiling)
         read = _grown(redone, 1, tiling)
         row0, row1 = int(tiling.row_start[read[0]]), int(tiling.row_end[read[2] - 1]) + 1
         col0, col1 = int(tiling.col_start[read[1]]), int(tiling.col_end[read[3] - 1]) + 1
-        z = self._heightfield.z_b[row0:row1, col0:col1]
+        z = tiling.fitted(self._heightfield.z_b)[row0:row1, col0:col1]
         part = BlockTiling(z.shape[0], z.shape[1], tiling.block_size)
         errors, bounds = block_errors(z, part), block_bounds(z, part)
         charges = edge_errors(z, part, errors)
@@ -58,6 +60,7 @@ class TerrainLod:
             bounds.z_max[rows, cols],
         )
         self._table.update(errors[:, rows, cols], charges[:, rows, cols], redone)
+        self._selector.refresh()
 
     def follow_edits(self, edits: EditOverlay | None) -> None:
         """Note which blocks hold an edited vertex: they are drawn at full resolution."""
