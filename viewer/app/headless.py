@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from viewer.app.picture_file import save_png
 from viewer.app.picture_quality import still
 from viewer.app.script import ScriptStep
-from viewer.app.stage import Stage, save_png
+from viewer.app.stage import Stage
 from viewer.app.viewer_app import ViewerApp
 from viewer.errors import ViewerError
 from viewer.render import RenderOptions, create_headless_context

@@ -10,13 +10,14 @@ from typing import Protocol
 import moderngl
 import numpy as np
 import numpy.typing as npt
-from PIL import Image
 
-from viewer.app.picture_quality import interactive, is_software
-from viewer.render import FrameInputs, FrameStats, Renderer, RenderOptions, check_context
+from viewer.app.picture_file import picture_size, save_png
+from viewer.app.picture_quality import interactive, is_software, still
+from viewer.commands import SavePicture
+from viewer.render import FrameInputs, FrameStats, HudText, Renderer, RenderOptions, check_context
 from viewer.world import Heightfield
 
-__all__ = ["Scene", "Stage", "save_png"]
+__all__ = ["Scene", "Stage"]
 
 EMPTY_COLOUR = (0.086, 0.102, 0.118, 1.0)
 
@@ -34,18 +35,11 @@ class Scene(Protocol):
     def note_painted(self, size: tuple[int, int]) -> None:
         """The inputs given last are on the picture now, of width and height `size` [pixels]."""
 
-    def take_picture_path(self) -> str | None:
-        """Return where the next picture is to be written, once."""
+    def take_picture_order(self) -> SavePicture | None:
+        """Return how and where the picture is to be written, once."""
 
     def complain(self, sentence: str) -> None:
         """Show a sentence to the user."""
-
-
-def save_png(path: Path, pixels: npt.NDArray[np.uint8]) -> None:
-    """Write an RGB picture, rows from the top, as PNG; a half-written file never bears the name."""
-    part = path.with_name(path.name + ".part")
-    Image.fromarray(pixels).save(part, format="PNG")
-    part.replace(path)
 
 
 class Stage:
@@ -115,14 +109,14 @@ class Stage:
                 self._renderer.release()
             self._renderer = Renderer(self.context, heightfield)
             self._heightfield = heightfield
+        order = self._scene.take_picture_order()
+        if order is not None:
+            self._write(order, inputs, size)  # first: picking needs the picture on the screen to be the last
         if quality is not None:
             inputs = dataclasses.replace(inputs, options=quality(inputs.options))
         self.stats = self._renderer.draw(target, size, inputs)
         self.pictures += 1
         self._scene.note_painted(size)
-        path = self._scene.take_picture_path()
-        if path is not None:
-            self._save(Path(path), target, size)
 
     def ground_at(self, x: float, y: float) -> tuple[float, float] | None:
         """Return the map point (x, y) [m] seen at a pixel of the last picture, None for the sky."""
@@ -142,10 +136,31 @@ class Stage:
         self._heightfield = None
         self._context = None
 
-    def _save(self, path: Path, target: moderngl.Framebuffer, size: tuple[int, int]) -> None:
+    def _write(self, order: SavePicture, inputs: FrameInputs, shown: tuple[int, int]) -> None:
+        assert self._renderer is not None
+        size = picture_size(order, shown)
+        longest = int(self.context.info["GL_MAX_RENDERBUFFER_SIZE"])
+        options = still(inputs.options)
+        scale = min(options.render_scale, longest / max(size))
+        if not order.with_text and inputs.hud is not None:
+            # That an event is hypothetical, or the data old, is told on every picture.
+            warnings = HudText(
+                legend=False,
+                scale_and_north=False,
+                is_hypothetical=inputs.hud.is_hypothetical,
+                notice=inputs.hud.notice,
+            )
+            inputs = dataclasses.replace(inputs, hud=warnings)
+        inputs = dataclasses.replace(inputs, options=dataclasses.replace(options, render_scale=scale))
+        colour = self.context.renderbuffer(size, 3)
+        target = self.context.framebuffer([colour])
         try:
-            save_png(path, self.pixels(target, size))
+            self._renderer.draw(target, size, inputs)
+            save_png(Path(order.path), self.pixels(target, size))
         except OSError as error:
-            self._scene.complain(f"the picture {path} could not be written: {error}")
+            self._scene.complain(f"the picture {order.path} could not be written: {error}")
         else:
-            self._scene.complain(f"picture written to {path}")
+            self._scene.complain(f"picture of {size[0]} x {size[1]} pixels written to {order.path}")
+        finally:
+            target.release()
+            colour.release()

@@ -15,6 +15,7 @@ from viewer.app.camera_work import CameraWork
 from viewer.app.comparison import Comparison
 from viewer.app.levee_watch import LeveeWatch
 from viewer.app.map_maker import MapMaker
+from viewer.app.picture_file import checked_order
 from viewer.app.picture_text import edit_overlay, hud_text, loss_notice
 from viewer.app.playback import Playback
 from viewer.app.pointing import Pointing
@@ -98,7 +99,7 @@ class ViewerApp:
         self.pointing = Pointing(loader, self.feed)
         self.options = RenderOptions()
         self.camera_work: CameraWork | None = None
-        self._picture_path: str | None = None
+        self._picture_order: SavePicture | None = None
         self._last_advance: float | None = None
         self._drawn_text: HudText | None = None
         self._text_checked = -math.inf
@@ -167,8 +168,8 @@ class ViewerApp:
                 self.pointing.take(command, self.shown)
                 self._picture_stale |= self.control.editing.drawing.is_on
                 self.control.editing.hover(self.pointing.hover_at, self.shown)
-            case SavePicture(path):
-                self._picture_path = path
+            case SavePicture():
+                self._picture_order = checked_order(command)
             case _:
                 if self.camera_work is None or not self.camera_work.carry_out(command):
                     raise CommandError(f"{type(command).__name__} is not possible before a terrain is shown")
@@ -274,10 +275,10 @@ class ViewerApp:
                 if self.recalculated.next_frame_s is None:
                     self.complain(f"recalculated: first frame after {self.recalculated.first_frame_s:.2f} s")
 
-    def take_picture_path(self) -> str | None:
-        """Return where the next picture is to be written, once."""
-        path, self._picture_path = self._picture_path, None
-        return path
+    def take_picture_order(self) -> SavePicture | None:
+        """Return how and where the picture is to be written, once."""
+        order, self._picture_order = self._picture_order, None
+        return order
 
     @property
     def is_settled(self) -> bool:

@@ -33,6 +33,16 @@ class SetOption:
 
 @dataclass(frozen=True)
 class SavePicture:
-    """Write the picture now shown to `path` (PNG)."""
+    """Write the picture now shown to `path` (PNG), drawn anew with smooth edges.
+
+    Attributes:
+        path: where to.
+        width: width of the file [pixels]; None takes the window's.
+        height: its height [pixels]; None takes the window's.
+        with_text: whether title, legend, scale bar and north arrow are written on it.
+    """
 
     path: str
+    width: float | None = None
+    height: float | None = None
+    with_text: bool = True

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QAction, QCloseEvent, QKeySequence
 from PySide6.QtWidgets import (
+    QDialog,
     QDockWidget,
-    QFileDialog,
     QFrame,
     QInputDialog,
     QMainWindow,
@@ -36,6 +36,7 @@ from viewer.gui.conductor import Conductor, Painter
 from viewer.gui.depth_plot import DepthPlot
 from viewer.gui.edit_panel import EditPanel
 from viewer.gui.kept_settings import KeptSettings
+from viewer.gui.picture_dialog import PictureDialog, ask_picture_path
 from viewer.gui.playback_bar import PlaybackBar
 from viewer.gui.reference_map import ReferenceMap
 from viewer.gui.run_panel import RunPanel
@@ -212,6 +213,7 @@ class MainWindow(QMainWindow):
     def _make_menus(self) -> None:
         file_menu = self.menuBar().addMenu("&File")
         self._action(file_menu, "Save picture ...", "Ctrl+S", self._save_picture)
+        self._action(file_menu, "Export picture ...", "Ctrl+Shift+S", self._export_picture)
         self._action(file_menu, "Quit", "Ctrl+Q", self.close)
         playback = self.menuBar().addMenu("&Playback")
         self._action(playback, "Play or pause", "Space", lambda: self._dispatch(TogglePlay()))
@@ -246,6 +248,11 @@ class MainWindow(QMainWindow):
             self._dispatch(Seek(max(0.0, index * status.output_interval)))
 
     def _save_picture(self) -> None:
-        path, _ = QFileDialog.getSaveFileName(self, "Save picture", "flood.png", "PNG pictures (*.png)")
+        path = ask_picture_path(self)
         if path:
             self._dispatch(SavePicture(path))
+
+    def _export_picture(self) -> None:
+        dialog = PictureDialog(self)
+        if dialog.exec() == QDialog.DialogCode.Accepted:
+            self._dispatch(dialog.command)
