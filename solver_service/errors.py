@@ -6,11 +6,13 @@
         SolverBlowUp        the computation gave a value that is not finite, or its time step collapsed
         TerrainError        a terrain file cannot be read or is not what it must be
         CaseError           a case file or one of the files it names is not valid
+            CaseTooLarge    an archive has more bytes than may be uploaded
         StoreError          the data folder cannot be read or written
             StoreFull       there is no room in the data folder
         RunError            a run cannot do what was asked of it
         ServeError          the service cannot listen
         AccessError         a token does not allow this, or the tokens cannot be read or written
+            QuotaError      the holder of a token would take more than is allowed
 
 Every message is one sentence that names the file, key or cell, the value, and what is allowed.
 """
@@ -63,6 +65,10 @@ class CaseError(ServiceError):
     """A case file, or one of the files it names, is not valid."""
 
 
+class CaseTooLarge(CaseError):
+    """An archive has more bytes than may be uploaded."""
+
+
 class StoreError(ServiceError):
     """The data folder cannot be read or written."""
 
@@ -81,3 +87,16 @@ class ServeError(ServiceError):
 
 class AccessError(ServiceError):
     """A token does not allow this, or the tokens cannot be read or written."""
+
+
+class QuotaError(AccessError):
+    """The holder of a token would take more than is allowed.
+
+    Args:
+        limit: name of the limit, such as `max_runs`.
+        sentence: what was asked and what is allowed.
+    """
+
+    def __init__(self, limit: str, sentence: str) -> None:
+        super().__init__(sentence)
+        self.limit = limit

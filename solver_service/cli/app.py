@@ -31,6 +31,19 @@ CaseArgument = Annotated[
 DeviceOption = Annotated[str, typer.Option("--device", help="auto, cpu or cuda:N.")]
 ThreadsOption = Annotated[int | None, typer.Option("--threads", help="CPU threads; all cores by default.")]
 DataDirOption = Annotated[Path | None, typer.Option("--data-dir", help="Folder of the runs.")]
+MaxRuns = Annotated[int | None, typer.Option("--max-runs", help="Runs that a token may keep.")]
+MaxCells = Annotated[
+    int | None, typer.Option("--max-cells", help="Cells that its runs may compute at the same time.")
+]
+MaxGpuBytes = Annotated[
+    int | None, typer.Option("--max-gpu-bytes", help="GPU memory that its runs may take [bytes].")
+]
+MaxDiskBytes = Annotated[
+    int | None,
+    typer.Option("--max-disk-bytes", help="Room for its frames, checkpoints and uploads [bytes]."),
+]
+MaxEdits = Annotated[int | None, typer.Option("--max-edits-per-s", help="Changes of edits within a second.")]
+MaxViewers = Annotated[int | None, typer.Option("--max-viewers", help="Streams that it may have open.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="End with one JSON object on standard output.")]
 
 
@@ -113,6 +126,12 @@ def serve(
     restart_attempts: Annotated[
         int | None, typer.Option("--restart-attempts", help="Restarts of a run in ten minutes.")
     ] = None,
+    max_runs: MaxRuns = None,
+    max_cells: MaxCells = None,
+    max_gpu_bytes: MaxGpuBytes = None,
+    max_disk_bytes: MaxDiskBytes = None,
+    max_edits_per_s: MaxEdits = None,
+    max_viewers: MaxViewers = None,
 ) -> None:
     """Serve runs to viewers until a signal stops it; writes one JSON line when it listens."""
     from solver_service.cli.serve import serve_runs
@@ -134,6 +153,12 @@ def serve(
         tls_key=tls_key,
         store_bytes=store_bytes,
         restart_attempts=restart_attempts,
+        max_runs=max_runs,
+        max_cells=max_cells,
+        max_gpu_bytes=max_gpu_bytes,
+        max_disk_bytes=max_disk_bytes,
+        max_edits_per_s=max_edits_per_s,
+        max_viewers=max_viewers,
     )
 
 
@@ -207,11 +232,54 @@ def token_create(
         float | None, typer.Option("--days", help="Days until it expires; never, without.")
     ] = None,
     data_dir: DataDirOption = None,
+    max_runs: MaxRuns = None,
+    max_cells: MaxCells = None,
+    max_gpu_bytes: MaxGpuBytes = None,
+    max_disk_bytes: MaxDiskBytes = None,
+    max_edits_per_s: MaxEdits = None,
+    max_viewers: MaxViewers = None,
 ) -> None:
     """Make a token and write it to standard output; it is told only now."""
     from solver_service.cli.token import create_token
 
-    create_token(label, scope, days, data_dir)
+    create_token(
+        label,
+        scope,
+        days,
+        data_dir,
+        max_runs=max_runs,
+        max_cells=max_cells,
+        max_gpu_bytes=max_gpu_bytes,
+        max_disk_bytes=max_disk_bytes,
+        max_edits_per_s=max_edits_per_s,
+        max_viewers=max_viewers,
+    )
+
+
+@token.command("limit")
+def token_limit(
+    token_id: Annotated[str, typer.Argument(metavar="ID", help="Id of the token, from the list.")],
+    data_dir: DataDirOption = None,
+    max_runs: MaxRuns = None,
+    max_cells: MaxCells = None,
+    max_gpu_bytes: MaxGpuBytes = None,
+    max_disk_bytes: MaxDiskBytes = None,
+    max_edits_per_s: MaxEdits = None,
+    max_viewers: MaxViewers = None,
+) -> None:
+    """Give a token the limits that are named, and for all others those of the service."""
+    from solver_service.cli.token import limit_token
+
+    limit_token(
+        token_id,
+        data_dir,
+        max_runs=max_runs,
+        max_cells=max_cells,
+        max_gpu_bytes=max_gpu_bytes,
+        max_disk_bytes=max_disk_bytes,
+        max_edits_per_s=max_edits_per_s,
+        max_viewers=max_viewers,
+    )
 
 
 @token.command("list")

@@ -11,22 +11,32 @@ from pathlib import Path
 
 from solver_service.store import default_data_dir
 from solver_service.web.scopes import scope_of
+from solver_service.web.token_limits import TokenLimits
 from solver_service.web.token_store import TokenStore
 
 DAY_S = 86_400.0
 
 
-def create_token(label: str, scope: str, days: float | None, data_dir: Path | None) -> None:
+def create_token(
+    label: str, scope: str, days: float | None, data_dir: Path | None, **limits: int | None
+) -> None:
     """Write a new token to standard output, and what it is to standard error.
 
+    Args:
+        label: whose it is.
+        scope: name of its scope.
+        days: until it expires; None for never.
+        data_dir: the data folder; None for the user's own.
+        limits: fields of `TokenLimits`; None where the service's own count.
+
     Raises:
-        AccessError: scope, label or days are not allowed.
+        AccessError: scope, label, days or a limit are not allowed.
         StoreError: the token store cannot be used.
     """
-    rights = scope_of(scope)
+    rights, allowed = scope_of(scope), TokenLimits(**limits)
     store = TokenStore(data_dir or default_data_dir())
     try:
-        token, record = store.create(label, rights, None if days is None else days * DAY_S)
+        token, record = store.create(label, rights, None if days is None else days * DAY_S, allowed)
     finally:
         store.close()
     print(token)
@@ -52,8 +62,24 @@ def list_tokens(data_dir: Path | None, json_line: bool) -> None:
     for record in records:
         print(
             f"{record.id}  {record.scope!s:<10}  {record.state(now):<7}  "
-            f"expires {_day(record.expires):<16}  {record.label}"
+            f"expires {_day(record.expires):<16}  {record.label}  ({_limits(record.limits)})"
         )
+
+
+def limit_token(name: str, data_dir: Path | None, **limits: int | None) -> None:
+    """Give a token other limits; a service that runs takes them at once.
+
+    Raises:
+        AccessError: there is no such token, or a limit is not allowed.
+        StoreError: the token store cannot be used.
+    """
+    allowed = TokenLimits(**limits)
+    store = TokenStore(data_dir or default_data_dir())
+    try:
+        record = store.limit(name, allowed)
+    finally:
+        store.close()
+    print(f"token {record.id} ({record.label}): {_limits(record.limits)}")
 
 
 def revoke_token(name: str, data_dir: Path | None) -> None:
@@ -69,6 +95,11 @@ def revoke_token(name: str, data_dir: Path | None) -> None:
     finally:
         store.close()
     print(f"token {record.id} ({record.label}) is revoked")
+
+
+def _limits(limits: TokenLimits) -> str:
+    said = ", ".join(f"{name} {value}" for name, value in limits.items() if value is not None)
+    return said or "limits of the service"
 
 
 def _day(moment: float | None) -> str:

@@ -41,7 +41,9 @@ class Branching:
         self._reports = reports
         self._audience = audience
 
-    async def recalculate(self, name: str, index: int, revision: int, keep_parent: bool = False) -> Run:
+    async def recalculate(
+        self, name: str, index: int, revision: int, keep_parent: bool = False, owner: str = ""
+    ) -> Run:
         """Branch a run at a frame with its working list as terrain.
 
         Args:
@@ -49,6 +51,7 @@ class Branching:
             index: frame at or before the playback time.
             revision: revision of the working list that is meant.
             keep_parent: whether the run goes on computing beside its child.
+            owner: id of the token that is charged for the child.
 
         Returns:
             The child.
@@ -80,6 +83,7 @@ class Branching:
                 status_reason="",
                 label="",
                 pinned=False,
+                owner=owner,
                 bed_revision=revision,
                 bed_edits=pack_edits(run.edit_log.edits),
             )

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import logging
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from protocol import CaseSummary
 from solver_service.errors import RunError, ServiceError
@@ -26,6 +29,7 @@ class CaseCatalogue:
         self._names: dict[str, str] = {}
         self._sources: dict[str, str] = {}
         self._summaries: dict[str, CaseSummary] = {}
+        self._starting: Counter[str] = Counter()
         for source in list_cases():
             try:
                 self._add(source)
@@ -37,13 +41,51 @@ class CaseCatalogue:
     def _add(self, source: str) -> None:
         summary = case_summary(source)
         self._names[source] = summary.name
+        self.add(summary, source)
+
+    def add(self, summary: CaseSummary, source: str) -> None:
+        """Offer a case, in place of one of the same name.
+
+        Args:
+            summary: the case in a few words.
+            source: what `load_case` is to be given.
+        """
         self._sources[summary.name] = source
         self._summaries[summary.name] = summary
+
+    def remove(self, name: str) -> None:
+        """Offer a case no longer.
+
+        Raises:
+            RunError: it is not offered, or a run of it is being started.
+        """
+        self.source(name)
+        if self._starting[name]:
+            raise RunError(f"a run of case {name} is being started; try again")
+        del self._sources[name], self._summaries[name]
+
+    @contextmanager
+    def held(self, name: str) -> Iterator[str]:
+        """Keep a case on offer until the block ends; gives what `load_case` is to be given.
+
+        Raises:
+            RunError: the case is not offered.
+        """
+        source = self.source(name)
+        self._starting[name] += 1
+        try:
+            yield source
+        finally:
+            self._starting[name] -= 1
 
     @property
     def summaries(self) -> tuple[CaseSummary, ...]:
         """All cases by name."""
         return tuple(self._summaries[name] for name in sorted(self._summaries))
+
+    def find(self, case: str) -> CaseSummary | None:
+        """A case in a few words, by its name or by the path that the operator gave."""
+        return self._summaries.get(self.name(case))
 
     def name(self, case: str) -> str:
         """The name of a case asked for by its name or by the path that the operator gave."""

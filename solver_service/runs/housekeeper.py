@@ -10,10 +10,9 @@ from typing import Protocol
 
 from solver_service.errors import ServiceError
 from solver_service.runs.run_reports import RunReports
-from solver_service.runs.run_status import ACTIVE, Move, RunStatus
+from solver_service.runs.run_status import ACTIVE, RunStatus
 from solver_service.runs.run_tree import Run, RunTree
 from solver_service.runs.store_thread import StoreThread
-from solver_service.runs.worker_messages import Pause
 from solver_service.store import (
     DataFolder,
     FrameRecord,
@@ -54,6 +53,9 @@ class RoomRules:
 
 class RunCommands(Protocol):
     """What the housekeeper asks of the control of runs."""
+
+    def halt(self, run: Run, reason: str) -> None:
+        """Let a run wait and tell why."""
 
     async def resume(self, name: str) -> None:
         """Go on with a run."""
@@ -165,11 +167,8 @@ class Housekeeper:
         )
         for run in self.tree:
             if run.status in ACTIVE:
-                self.reports.move(run, Move.WAIT, reason)
+                self.commands.halt(run, reason)
                 run.lacks_room = True
-                self.reports.notice("error", f"paused: {reason}", run.run)
-                if run.worker is not None and run.worker.run == run.run:
-                    run.worker.send(Pause(run.run))
 
     async def _resume_waiting(self) -> None:
         waiting = [run for run in self.tree if run.lacks_room and run.status is RunStatus.PAUSED]

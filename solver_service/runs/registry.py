@@ -172,9 +172,22 @@ class RunRegistry:
     # what there is
 
     @property
+    def catalogue(self) -> CaseCatalogue:
+        """The cases on offer, by name."""
+        return self._catalogue
+
+    @property
     def cases(self) -> tuple[CaseSummary, ...]:
         """The cases on offer."""
         return self._catalogue.summaries
+
+    def case(self, name: str) -> CaseSummary | None:
+        """A case on offer, or None."""
+        return self._catalogue.find(name)
+
+    async def owned_bytes(self, owner: str) -> int:
+        """Room that the runs of an owner take in the store [bytes]."""
+        return await self._store.call(RunDatabase.owned_bytes, owner)
 
     def infos(self) -> tuple[RunInfo, ...]:
         """All runs, newest first."""

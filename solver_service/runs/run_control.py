@@ -53,45 +53,47 @@ class RunControl:
         output_interval: float | None = None,
         device: str = "auto",
         paused: bool = False,
+        owner: str = "",
     ) -> Run:
-        """Start a run of a case from time 0.
+        """Start a run of a case from time 0; `owner` is the id of the token that is charged for it.
 
         Raises:
             RunError: the case is not offered, cannot be loaded, or no worker is free.
             StoreError: the run cannot be stored.
         """
         case = self._catalogue.name(case)
-        source = self._catalogue.source(case)
-        device = self._device if device == "auto" else device
-        name = new_run_id()
-        worker = await self._supervisor.pool.take(name, source, device)
-        try:
-            loaded = await worker.load(source, device)
-            record = RunRecord(
-                run=name,
-                case=case,
-                case_fingerprint=loaded.fingerprint,
-                title=loaded.title,
-                parent=None,
-                branch_index=0,
-                status=RunStatus.STARTING.value,
-                status_reason="",
-                duration=duration or loaded.duration,
-                output_interval=output_interval or loaded.output_interval,
-                device=loaded.device,
-                bed_revision=0,
-                bed_edits=pack_edits(()),
-                facts=loaded.facts.pack(),
-            )
-            await self._store.call(RunDatabase.insert_run, record)
-        except BaseException:
-            self._supervisor.pool.release(worker)
-            raise
-        run = Run.of(record, ())
-        self._tree.add(run)
-        self._supervisor.begin(run, worker, paused=paused)
-        self._audience.announce(RunChanged(self._tree.info(run)))
-        return run
+        with self._catalogue.held(case) as source:
+            device = self._device if device == "auto" else device
+            name = new_run_id()
+            worker = await self._supervisor.pool.take(name, source, device)
+            try:
+                loaded = await worker.load(source, device)
+                record = RunRecord(
+                    run=name,
+                    case=case,
+                    case_fingerprint=loaded.fingerprint,
+                    title=loaded.title,
+                    parent=None,
+                    branch_index=0,
+                    status=RunStatus.STARTING.value,
+                    status_reason="",
+                    duration=duration or loaded.duration,
+                    output_interval=output_interval or loaded.output_interval,
+                    device=loaded.device,
+                    bed_revision=0,
+                    bed_edits=pack_edits(()),
+                    facts=loaded.facts.pack(),
+                    owner=owner,
+                )
+                await self._store.call(RunDatabase.insert_run, record)
+            except BaseException:
+                self._supervisor.pool.release(worker)
+                raise
+            run = Run.of(record, ())
+            self._tree.add(run)
+            self._supervisor.begin(run, worker, paused=paused)
+            self._audience.announce(RunChanged(self._tree.info(run)))
+            return run
 
     async def pause(self, name: str) -> None:
         """Stop computing a run until `resume`."""
@@ -100,6 +102,13 @@ class RunControl:
             self._reports.move(run, Move.PAUSE)
             if run.worker is not None and run.worker.run == name:
                 run.worker.send(Pause(name))
+
+    def halt(self, run: Run, reason: str) -> None:
+        """Let a run that computes wait, and tell people why."""
+        self._reports.move(run, Move.WAIT, reason)
+        self._reports.notice("error", f"paused: {reason}", run.run)
+        if run.worker is not None and run.worker.run == run.run:
+            run.worker.send(Pause(run.run))
 
     async def resume(self, name: str) -> None:
         """Go on with a paused or failed run, from where it stood or from its last checkpoint."""

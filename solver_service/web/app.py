@@ -16,6 +16,7 @@ from solver_service.runs import RunRegistry
 from solver_service.web.auth import Access, Gate
 from solver_service.web.error_codes import http_status, wire_code
 from solver_service.web.metrics import CONTENT_TYPE, metrics_text, unready_reason
+from solver_service.web.quotas import Quotas, owner_of
 from solver_service.web.scopes import Scope
 from solver_service.web.stream import StreamConnection
 from solver_service.web.token_store import TokenStore
@@ -38,13 +39,14 @@ class RunCreated(BaseModel):
     run: str
 
 
-def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore) -> FastAPI:
+def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore, quotas: Quotas) -> FastAPI:
     """Make the application.
 
     Args:
         registry: the runs; opened and closed by the caller.
         gate: who may come in.
         tokens: the tokens that an admin looks at and revokes.
+        quotas: how much the holder of a token may take.
 
     Returns:
         The application; `app.state.connections` is the set of open streams, `app.state.accepts` is set while
@@ -92,7 +94,7 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore) -> FastAPI
     @app.get("/metrics", dependencies=[needs(Scope.VIEWER)])
     async def metrics() -> Response:
         """Gauges in the text format of Prometheus."""
-        text = metrics_text(registry, len(connections), tokens.path.parent)
+        text = metrics_text(registry, quotas, len(connections), tokens.path.parent)
         return Response(text, headers={"Content-Type": CONTENT_TYPE})
 
     @app.get("/version", dependencies=[needs(Scope.VIEWER)])
@@ -127,12 +129,20 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore) -> FastAPI
         """All runs, newest first."""
         return [msgspec.to_builtins(info) for info in registry.infos()]
 
-    @app.post("/v1/runs", dependencies=[needs(Scope.CONTROLLER)], status_code=201)
-    async def start_run(body: RunRequest) -> RunCreated:
+    controller = needs(Scope.CONTROLLER)
+
+    @app.post("/v1/runs", status_code=201)
+    async def start_run(body: RunRequest, access: Access = controller) -> RunCreated:
         """Start a run."""
-        run = await registry.control.start(
-            body.case, body.duration, body.output_interval, body.device, body.paused
-        )
+        async with quotas.start(access, body.case, body.device):
+            run = await registry.control.start(
+                body.case,
+                body.duration,
+                body.output_interval,
+                body.device,
+                body.paused,
+                owner_of(access),
+            )
         return RunCreated(run=run.run)
 
     @app.get("/v1/runs/{run}", dependencies=[needs(Scope.VIEWER)])
@@ -164,7 +174,7 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore) -> FastAPI
             return
         await websocket.accept(subprotocol=PROTOCOL_VERSION)
         access = gate.access_by_header(websocket.headers.get("authorization"))
-        connection = StreamConnection(websocket, registry, gate, access, connections)
+        connection = StreamConnection(websocket, registry, gate, quotas, access, connections)
         connections.add(connection)
         try:
             await connection.serve()

@@ -40,8 +40,10 @@ from protocol import (
 )
 from solver_service.errors import RunError
 from solver_service.runs import RunRegistry, Session
+from solver_service.web.auth import Access
 from solver_service.web.frame_feed import FrameFeed
 from solver_service.web.outbox import Outbox
+from solver_service.web.quotas import Quotas, owner_of
 
 LISTED = 1000
 
@@ -61,6 +63,7 @@ class Client(Protocol):
     session: ServerSession
     feed: FrameFeed
     outbox: Outbox
+    quotas: Quotas
 
     @property
     def identity(self) -> Session:
@@ -73,10 +76,16 @@ class Client(Protocol):
         """Queue one message."""
 
 
-async def carry_out(command: Command, client: Client) -> None:
+async def carry_out(command: Command, client: Client, access: Access) -> None:
     """Do what a command asks and answer it.
 
+    Args:
+        command: what is asked.
+        client: the connection it came by.
+        access: who asks.
+
     Raises:
+        QuotaError: whoever is charged for it would take more than is allowed; nothing has changed.
         ServiceError: it cannot be done; nothing has changed.
         EditError: an edit does not fit.
     """
@@ -90,16 +99,23 @@ async def carry_out(command: Command, client: Client) -> None:
         case ListRuns():
             client.tell(RunList(command.id, registry.infos()[:LISTED]))
         case StartRun():
-            run = await registry.control.start(
-                command.case, command.duration, command.output_interval, command.device, command.paused
-            )
+            async with client.quotas.start(access, command.case, command.device):
+                run = await registry.control.start(
+                    command.case,
+                    command.duration,
+                    command.output_interval,
+                    command.device,
+                    command.paused,
+                    owner_of(access),
+                )
             registry.controllers.take(run.run, client.identity, force=True)
             client.tell(Ack(command.id, {"run": run.run}))
         case PauseRun():
             await registry.control.pause(command.run)
             client.tell(Ack(command.id))
         case ResumeRun():
-            await registry.control.resume(command.run)
+            async with client.quotas.resume(registry.tree.get(command.run)):
+                await registry.control.resume(command.run)
             client.tell(Ack(command.id))
         case StopRun():
             await registry.control.stop(command.run)
@@ -134,12 +150,15 @@ async def carry_out(command: Command, client: Client) -> None:
             client.tell(Ack(command.id))
             client.feed.follow_session()
         case AppendEdit() | AppendEdits() | ReplaceEdit() | DeleteEdit() | UndoEdit() | RedoEdit():
+            client.quotas.edit(access, len(command.edits) if isinstance(command, AppendEdits) else 1)
             client.tell(Ack(command.id, {"revision": await _edit(command, registry)}))
         case Recalculate():
             watched = client.feed.run
-            child = await registry.branching.recalculate(
-                command.run, command.index, command.revision, command.keep_parent
-            )
+            run = registry.tree.get(command.run)
+            async with client.quotas.branch(access, run, command.keep_parent):
+                child = await registry.branching.recalculate(
+                    command.run, command.index, command.revision, command.keep_parent, owner_of(access)
+                )
             registry.controllers.take(child.run, client.identity, force=True)
             client.tell(Ack(command.id, {"run": child.run}))
             if watched == command.run:

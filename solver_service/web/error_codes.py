@@ -8,6 +8,7 @@ from solver_service.errors import (
     CaseError,
     DeviceError,
     ModelError,
+    QuotaError,
     RunError,
     ServiceError,
     StoreError,
@@ -17,6 +18,7 @@ from solver_service.errors import (
 
 _CODES: dict[type[ServiceError], tuple[str, int]] = {
     AccessError: ("forbidden", 403),
+    QuotaError: ("over_quota", 429),
     RunError: ("refused", 409),
     StoreError: ("store_failed", 507),
     StoreFull: ("store_failed", 507),

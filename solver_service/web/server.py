@@ -20,6 +20,8 @@ from solver_service.errors import ServeError
 from solver_service.runs import RoomRules, RunRegistry
 from solver_service.web.app import create_app
 from solver_service.web.auth import Gate, load_token
+from solver_service.web.disk_watch import watch_disk
+from solver_service.web.quotas import Quotas
 from solver_service.web.settings import ServiceSettings
 from solver_service.web.tls import check_tls
 from solver_service.web.token_store import TokenStore
@@ -57,11 +59,12 @@ def run_service(settings: ServiceSettings) -> None:
             room=RoomRules(settings.store_bytes, settings.reserve_bytes),
         )
         tokens = TokenStore(settings.data_dir)
+        quotas = Quotas(settings.limits, tokens, registry)
         gate = Gate(load_token(settings.token_path), settings.allowed_origins, tokens)
     except BaseException:
         listener.close()
         raise
-    server = _Server(settings, registry, gate, tokens, lambda: _tell_ready(settings, listener))
+    server = _Server(settings, registry, gate, tokens, quotas, lambda: _tell_ready(settings, listener))
     # uvicorn raises the signal that stopped it once more when it is done; it has done its work by then
     signal.signal(signal.SIGTERM, lambda number, frame: None)
     if settings.stop_with_stdin:
@@ -79,13 +82,15 @@ class _Server(uvicorn.Server):
         registry: RunRegistry,
         gate: Gate,
         tokens: TokenStore,
+        quotas: Quotas,
         on_ready: Callable[[], None],
     ) -> None:
         self._registry = registry
         self._gate = gate
         self._tokens = tokens
+        self._quotas = quotas
         self._on_ready = on_ready
-        self._app = create_app(registry, gate, tokens)
+        self._app = create_app(registry, gate, tokens, quotas)
         super().__init__(
             uvicorn.Config(
                 self._app,
@@ -105,15 +110,19 @@ class _Server(uvicorn.Server):
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await self._registry.open()
-        watch = watch_tokens(self._gate, self._app.state.connections)
-        self._watch = asyncio.get_running_loop().create_task(watch)
+        watches = (
+            watch_tokens(self._gate, self._app.state.connections),
+            watch_disk(self._quotas, self._registry),
+        )
+        self._watches = [asyncio.get_running_loop().create_task(watch) for watch in watches]
         await super().startup(sockets)
         self._app.state.accepts = True
         self._on_ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         self._app.state.accepts = False
-        self._watch.cancel()
+        for watch in self._watches:
+            watch.cancel()
         for connection in tuple(self._app.state.connections):
             connection.end(GOING_AWAY, "the service is ending")
         await asyncio.gather(super().shutdown(sockets), self._registry.close())

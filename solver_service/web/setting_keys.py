@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from solver_service.web.settings import ServiceSettings
+from solver_service.web.token_limits import LARGEST
 
 ENVIRONMENT_PREFIX = "FEV_SERVE_"
 
@@ -109,6 +110,11 @@ class SettingKey:
         return self.read(typed, base)
 
 
+def _limit(name: str, meaning: str) -> SettingKey:
+    """A limit of every token that says nothing itself."""
+    return SettingKey(name, "integer", meaning, f"--{name.replace('_', '-')}", 0, LARGEST)
+
+
 KEYS: tuple[SettingKey, ...] = (
     SettingKey("host", "text", "address to listen on", "--host"),
     SettingKey("port", "integer", "TCP port; 0 takes a free one", "--port", 0, 65535),
@@ -150,6 +156,12 @@ KEYS: tuple[SettingKey, ...] = (
     ),
     SettingKey("store_bytes", "integer", "budget of frames and checkpoints [bytes]", "--store-bytes", 1),
     SettingKey("reserve_bytes", "integer", "room on the disk that is left to others [bytes]", least=0),
+    _limit("max_runs", "runs that a token may keep"),
+    _limit("max_cells", "cells that the runs of a token may compute at the same time"),
+    _limit("max_gpu_bytes", "GPU memory that the runs of a token may take [bytes]"),
+    _limit("max_disk_bytes", "room that frames, checkpoints and uploads of a token may take [bytes]"),
+    _limit("max_edits_per_s", "changes of edits that a token may make within a second"),
+    _limit("max_viewers", "streams that a token may have open"),
 )
 """All settings, in the order in which they are told."""
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from solver_service.store import default_data_dir
+from solver_service.web.token_limits import NAMES, TokenLimits
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,12 @@ class ServiceSettings:
         restart_within_s: the time in which these attempts count [s].
         store_bytes: most bytes of frames and checkpoints; None for as much as the disk has.
         reserve_bytes: room on the disk that is left to others [bytes].
+        max_runs: runs that a token may keep; None for no limit, as with all that follow.
+        max_cells: cells that the runs of a token may compute at the same time.
+        max_gpu_bytes: GPU memory that the runs of a token may take [bytes].
+        max_disk_bytes: room that frames, checkpoints and uploads of a token may take [bytes].
+        max_edits_per_s: changes of edits that a token may make within a second.
+        max_viewers: streams that a token may have open.
     """
 
     host: str = "127.0.0.1"
@@ -57,6 +64,17 @@ class ServiceSettings:
     restart_within_s: float = 600.0
     store_bytes: int | None = None
     reserve_bytes: int = 256 << 20
+    max_runs: int | None = None
+    max_cells: int | None = None
+    max_gpu_bytes: int | None = None
+    max_disk_bytes: int | None = None
+    max_edits_per_s: int | None = None
+    max_viewers: int | None = None
+
+    @property
+    def limits(self) -> TokenLimits:
+        """What a token may take that says nothing itself, and the token file."""
+        return TokenLimits(**{name: getattr(self, name) for name in NAMES})
 
     @property
     def token_path(self) -> Path:

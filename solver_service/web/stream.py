@@ -33,13 +33,14 @@ from protocol import (
     WaterBudget,
     Welcome,
 )
-from solver_service.errors import ServiceError, StoreError
+from solver_service.errors import AccessError, ServiceError, StoreError
 from solver_service.runs import RunRegistry, Session
 from solver_service.web.auth import Access, Gate
 from solver_service.web.commands import carry_out
 from solver_service.web.error_codes import wire_code
 from solver_service.web.frame_feed import FrameFeed
 from solver_service.web.outbox import Outbox
+from solver_service.web.quotas import Quotas
 from solver_service.web.scopes import check_scope
 from solver_service.web.version import SERVER_NAME, server_version
 
@@ -49,6 +50,7 @@ HELLO_TIMEOUT_S = 5.0
 SEND_TIMEOUT_S = 20.0
 POLICY_VIOLATION = 1008
 INTERNAL_ERROR = 1011
+TRY_LATER = 1013
 REPLACED = 4001
 
 
@@ -57,13 +59,18 @@ class ConnectionEnded(Exception):
 
 
 class StreamConnection:
-    """A client on the stream; a `Listener` of the runs."""
+    """A client on the stream; a `Listener` of the runs.
+
+    Attributes:
+        is_welcome: whether it was let in and has not ended.
+    """
 
     def __init__(
         self,
         websocket: WebSocket,
         registry: RunRegistry,
         gate: Gate,
+        quotas: Quotas,
         access: Access | None,
         others: Set[StreamConnection] = frozenset(),
     ) -> None:
@@ -73,11 +80,13 @@ class StreamConnection:
             websocket: the socket.
             registry: the runs.
             gate: who may come in.
+            quotas: how much whoever comes in may take.
             access: what the token of the Authorization header allows; None where the hello must bring one.
             others: the connections there are, itself included.
         """
         self.session = ServerSession()
         self.registry = registry
+        self.quotas = quotas
         self.feed = FrameFeed(registry, self.session)
         self.outbox = Outbox()
         self.name = f"s{secrets.token_hex(6)}"
@@ -90,6 +99,7 @@ class StreamConnection:
         self._busy_with: Command | None = None
         self._held: list[ServerMessage] = []
         self._controlled: set[str] = set()
+        self.is_welcome = False
 
     async def serve(self) -> None:
         """Talk until either side ends it."""
@@ -101,6 +111,7 @@ class StreamConnection:
         except* (ConnectionEnded, WebSocketDisconnect):
             LOG.info("session %s ended", self.name)
         finally:
+            self.is_welcome = False
             self.registry.audience.remove(self)
             self.registry.controllers.ended(self.name)
             self.session.close()
@@ -198,6 +209,11 @@ class StreamConnection:
         if self.access is None:
             self._refuse(POLICY_VIOLATION, "wrong_token", "The token is missing or wrong.")
             return
+        try:
+            self.quotas.view(self.access, self._count_same_owner(hello))
+        except AccessError as error:
+            self._refuse(TRY_LATER, wire_code(error), str(error))
+            return
         self._welcome(hello)
         while True:
             message = await self._receive()
@@ -216,7 +232,7 @@ class StreamConnection:
                     continue
                 check_scope(command, self.access.scope)
                 # what has begun is carried to its end although the connection may end meanwhile
-                await self.registry.carry_through(carry_out(command, self))
+                await self.registry.carry_through(carry_out(command, self, self.access))
             except (ServiceError, ProtocolError) as error:
                 self.tell(Error(command.id, wire_code(error), str(error)[:2000]))
             finally:
@@ -271,7 +287,17 @@ class StreamConnection:
         """Hear nothing more; the sender closes the connection, which ends all tasks."""
         await asyncio.Event().wait()
 
+    def _count_same_owner(self, hello: Hello) -> int:
+        """How many streams of the same owner stay open beside this one."""
+        replaced = hello.resume.session if hello.resume is not None else None
+        return sum(
+            other.access == self.access and other.name != replaced and other.is_welcome
+            for other in self._others
+            if other is not self
+        )
+
     def _welcome(self, hello: Hello) -> None:
+        self.is_welcome = True
         self.tell(
             Welcome(
                 protocol=self.session.version or "",

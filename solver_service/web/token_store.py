@@ -2,7 +2,7 @@
 
 A token is `fev-ID-SECRET` with 256 random bits of secret. The file keeps the SHA-256 of the whole
 token: a slow hash would not protect better what cannot be guessed anyway. The commands write
-the file while a service reads it.
+the file while a service reads it. Beside each token stands how much its holder may take.
 """
 
 from __future__ import annotations
@@ -16,11 +16,13 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from solver_service.errors import AccessError, StoreError
 from solver_service.web.scopes import Scope, scope_of
+from solver_service.web.token_limits import NAMES, TokenLimits
 
 FILE_NAME = "tokens.sqlite"
 SECRET_BYTES = 32
@@ -38,7 +40,7 @@ CREATE TABLE IF NOT EXISTS tokens (
     revoked REAL
 ) STRICT
 """
-_COLUMNS = "id, label, scope, created, expires, revoked"
+_COLUMNS = f"id, label, scope, created, expires, revoked, {', '.join(NAMES)}"
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,7 @@ class TokenRecord:
         created: when it was made [s since 1970].
         expires: when it ends [s since 1970], or None for never.
         revoked: when it was revoked [s since 1970], or None.
+        limits: how much its holder may take; the service's own limits where it says nothing.
     """
 
     id: str
@@ -60,6 +63,7 @@ class TokenRecord:
     created: float
     expires: float | None
     revoked: float | None
+    limits: TokenLimits = field(default_factory=TokenLimits)
 
     def holds(self, now: float) -> bool:
         """Whether it opens the door at a time [s since 1970]."""
@@ -98,6 +102,7 @@ class TokenStore:
             with self._transaction() as database:
                 database.execute("PRAGMA journal_mode = WAL")
                 database.execute(_SCHEMA)
+                _add_limits(database)
         except StoreError:
             self.close()
             raise
@@ -106,13 +111,16 @@ class TokenStore:
         """Close the file."""
         self._database.close()
 
-    def create(self, label: str, scope: Scope, lifetime_s: float | None) -> tuple[str, TokenRecord]:
+    def create(
+        self, label: str, scope: Scope, lifetime_s: float | None, limits: TokenLimits | None = None
+    ) -> tuple[str, TokenRecord]:
         """Make a token.
 
         Args:
             label: whose it is.
             scope: what it allows.
             lifetime_s: how long it opens the door [s], or None for ever.
+            limits: how much its holder may take; None for what the service allows to everybody.
 
         Returns:
             The token, which is kept nowhere, and what is known of it.
@@ -127,12 +135,30 @@ class TokenStore:
             raise AccessError(f"a lifetime of {lifetime_s:g} s is not allowed; it must be above 0 s")
         now = self._clock()
         expires = None if lifetime_s is None else now + lifetime_s
-        record = TokenRecord(secrets.token_hex(ID_BYTES), label, scope, now, expires, None)
+        limits = limits or TokenLimits()
+        record = TokenRecord(secrets.token_hex(ID_BYTES), label, scope, now, expires, None, limits)
         token = f"fev-{record.id}-{secrets.token_urlsafe(SECRET_BYTES)}"
-        row = (record.id, _digest(token), label, str(scope), now, expires)
+        row = (record.id, label, str(scope), now, expires, None, *(value for _, value in limits.items()))
+        marks = ", ".join("?" for _ in row)
         with self._transaction() as database:
-            database.execute("INSERT INTO tokens VALUES (?, ?, ?, ?, ?, ?, NULL)", row)
+            database.execute(
+                f"INSERT INTO tokens ({_COLUMNS}, digest) VALUES ({marks}, ?)", (*row, _digest(token))
+            )
         return token, record
+
+    def limit(self, name: str, limits: TokenLimits) -> TokenRecord:
+        """Give a token other limits, which count from now on.
+
+        Raises:
+            AccessError: there is no such token.
+            StoreError: the file cannot be written.
+        """
+        changes = ", ".join(f"{column} = ?" for column in NAMES)
+        with self._transaction() as database:
+            database.execute(
+                f"UPDATE tokens SET {changes} WHERE id = ?", (*(value for _, value in limits.items()), name)
+            )
+        return self.known(name)
 
     def records(self) -> list[TokenRecord]:
         """All tokens, oldest first.
@@ -155,6 +181,15 @@ class TokenStore:
             database.execute(
                 "UPDATE tokens SET revoked = ? WHERE id = ? AND revoked IS NULL", (self._clock(), name)
             )
+        return self.known(name)
+
+    def known(self, name: str) -> TokenRecord:
+        """The record of a token, also of one that has ended.
+
+        Raises:
+            AccessError: there is no such token.
+            StoreError: the file cannot be read.
+        """
         record = self._find(name)
         if record is None:
             raise AccessError(f"there is no token {name!r}; `fev-solver token list` tells their ids")
@@ -204,6 +239,14 @@ def _digest(token: str) -> str:
     return hashlib.sha256(token.encode("utf-8", "surrogatepass")).hexdigest()
 
 
-def _record(row: tuple[str, str, str, float, float | None, float | None]) -> TokenRecord:
-    name, label, scope, created, expires, revoked = row
-    return TokenRecord(name, label, scope_of(scope), created, expires, revoked)
+def _add_limits(database: sqlite3.Connection) -> None:
+    """Give a file that was made before there were limits their columns."""
+    there = {row[1] for row in database.execute("PRAGMA table_info(tokens)").fetchall()}
+    for column in NAMES:
+        if column not in there:
+            database.execute(f"ALTER TABLE tokens ADD COLUMN {column} INTEGER")
+
+
+def _record(row: tuple[Any, ...]) -> TokenRecord:
+    name, label, scope, created, expires, revoked, *limits = row
+    return TokenRecord(name, label, scope_of(scope), created, expires, revoked, TokenLimits(*limits))

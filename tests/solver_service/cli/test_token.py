@@ -34,12 +34,30 @@ def test_a_token_can_be_made_for_some_days(tmp_path: Path, fev_solver) -> None:
     assert (row["scope"], row["state"], row["label"]) == ("viewer", "valid", "guest")
 
 
+def test_the_limits_of_a_token_are_made_told_and_replaced(tmp_path: Path, fev_solver) -> None:
+    words = ("token", "create", "room", "--scope", "viewer", "--max-runs", "2", "--max-viewers", "0")
+    fev_solver(*words, "--data-dir", tmp_path)
+    (row,) = json.loads(fev_solver("token", "list", "--json", "--data-dir", tmp_path).out)["tokens"]
+    assert {name: value for name, value in row["limits"].items() if value is not None} == {
+        "max_runs": 2,
+        "max_viewers": 0,
+    }
+    assert "max_runs 2, max_viewers 0" in fev_solver("token", "list", "--data-dir", tmp_path).out
+
+    told = fev_solver("token", "limit", row["id"], "--max-cells", "5", "--data-dir", tmp_path)
+    assert told.code == 0
+    (row,) = json.loads(fev_solver("token", "list", "--json", "--data-dir", tmp_path).out)["tokens"]
+    assert {name: value for name, value in row["limits"].items() if value is not None} == {"max_cells": 5}
+
+
 def test_what_cannot_be_is_refused_in_one_sentence_and_makes_nothing(tmp_path: Path, fev_solver) -> None:
     for words in (
         ("create", "x", "--scope", "root"),
         ("create", "x", "--scope", "viewer", "--days", "-1"),
         ("create", "", "--scope", "viewer"),
+        ("create", "x", "--scope", "viewer", "--max-runs", "-1"),
         ("revoke", "deadbeef"),
+        ("limit", "deadbeef", "--max-runs", "1"),
     ):
         answer = fev_solver("token", *words, "--data-dir", tmp_path)
         assert answer.code == 2, words

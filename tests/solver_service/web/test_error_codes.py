@@ -5,6 +5,7 @@ from solver_service.errors import (
     AccessError,
     CaseError,
     DeviceError,
+    QuotaError,
     RunError,
     ServeError,
     StoreError,
@@ -18,6 +19,7 @@ from solver_service.web.error_codes import http_status, wire_code
     ("error", "code", "status"),
     [
         (AccessError("x"), "forbidden", 403),
+        (QuotaError("max_runs", "x"), "over_quota", 429),
         (RunError("x"), "refused", 409),
         (StoreError("x"), "store_failed", 507),
         (StoreFull("x"), "store_failed", 507),

@@ -5,7 +5,7 @@ import httpx
 
 import protocol
 from bench.service_process import ServiceClient, ServiceProcess
-from solver_service.web.metrics import Gauge, unready_reason
+from solver_service.web.metrics import Family, unready_reason
 
 SAMPLE = re.compile(r'([a-z_]+)(?:\{([a-z]+)="((?:[^"\\\n]|\\.)*)"\})? (\S+)')
 
@@ -32,7 +32,7 @@ def scraped(service: ServiceProcess) -> dict[tuple[str, str], float]:
 
 
 def test_a_gauge_is_told_in_the_text_format() -> None:
-    gauge = Gauge("fev_x_bytes", "What it is.", {(): 2, (("name", 'a"b\\c\nd'),): 0.5})
+    gauge = Family("fev_x_bytes", "What it is.", {(): 2, (("name", 'a"b\\c\nd'),): 0.5})
     assert gauge.lines() == [
         "# HELP fev_x_bytes What it is.",
         "# TYPE fev_x_bytes gauge",

@@ -1,11 +1,15 @@
+import hashlib
+import sqlite3
 import stat
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from solver_service.errors import AccessError, StoreError
 from solver_service.web.scopes import Scope
+from solver_service.web.token_limits import TokenLimits
 from solver_service.web.token_store import FILE_NAME, TokenStore
 
 
@@ -107,3 +111,24 @@ def test_a_file_that_is_no_token_store_is_told(tmp_path: Path) -> None:
     (tmp_path / FILE_NAME).write_bytes(b"not a database at all, but long enough to be looked at" * 10)
     with pytest.raises(StoreError, match=r"tokens\.sqlite cannot be used"):
         TokenStore(tmp_path)
+
+
+def test_a_file_from_before_there_were_limits_keeps_its_tokens_and_takes_limits(tmp_path: Path) -> None:
+    with closing(sqlite3.connect(tmp_path / "tokens.sqlite")) as database:
+        database.execute(
+            "CREATE TABLE tokens (id TEXT PRIMARY KEY, digest TEXT NOT NULL, label TEXT NOT NULL, "
+            "scope TEXT NOT NULL, created REAL NOT NULL, expires REAL, revoked REAL) STRICT"
+        )
+        digest = hashlib.sha256(b"fev-00000000-old").hexdigest()
+        database.execute(
+            "INSERT INTO tokens VALUES ('00000000', ?, 'a', 'viewer', 1.0, NULL, NULL)", (digest,)
+        )
+        database.commit()
+    store = TokenStore(tmp_path)
+    record = store.opened_by("fev-00000000-old")
+    assert record is not None
+    assert record.limits == TokenLimits()
+    assert store.limit("00000000", TokenLimits(max_runs=3)).limits == TokenLimits(max_runs=3)
+    with pytest.raises(AccessError, match="there is no token"):
+        store.limit("11111111", TokenLimits())
+    store.close()
