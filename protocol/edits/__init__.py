@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from protocol.edits.apply import EditedBed, apply_edits
+from protocol.edits.apply import EditedBed, apply_edits, edited_cells
 from protocol.edits.check import check_edit
 from protocol.edits.log import EditLog
 from protocol.edits.model import Edit, EditArea, EditLine, EditType, Operation
@@ -18,5 +18,6 @@ __all__ = [
     "Operation",
     "apply_edits",
     "check_edit",
+    "edited_cells",
     "rasterise_edit",
 ]

@@ -68,7 +68,7 @@ def apply_edits(z_b_base: npt.ArrayLike, edits: Iterable[Edit], grid: GridGeomet
         rows, cols, position = rasterise_edit(edit, grid)
         if rows.size == 0:
             continue
-        z_b[rows, cols] = _edited(z_b[rows, cols], edit, position, grid)
+        z_b[rows, cols] = edited_cells(z_b[rows, cols], edit, position, grid)
         box = (int(rows[0]), int(rows[-1]) + 1, int(cols.min()), int(cols.max()) + 1)
         dirty = box if dirty is None else _union(dirty, box)
     if dirty is None:
@@ -77,8 +77,15 @@ def apply_edits(z_b_base: npt.ArrayLike, edits: Iterable[Edit], grid: GridGeomet
     return EditedBed(z_b, dirty, np.sign(z_b[window] - base[window]).astype(np.int8))
 
 
-def _edited(z: FloatArray, edit: Edit, position: Float64Array | None, grid: GridGeometry) -> FloatArray:
-    """The new bed of the covered cells."""
+def edited_cells(z: FloatArray, edit: Edit, position: Float64Array | None, grid: GridGeometry) -> FloatArray:
+    """The new bed of the cells that an edit covers.
+
+    Args:
+        z: their bed so far [m, relative to grid.datum_offset], shape [n].
+        edit: the edit.
+        position: where along the line each of them lies, from `rasterise_edit`.
+        grid: the grid of the bed.
+    """
     sign = edit.operation.sign
     if edit.type is EditType.modulate:
         return z + np.float32(sign * edit.magnitude)

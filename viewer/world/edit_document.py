@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from protocol import Edit, GridGeometry, apply_edits
+from protocol import Edit, GridGeometry, apply_edits, rasterise_edit
 from viewer.world.heightfield import Rect, union_rect
 
 __all__ = ["EditDocument", "EditPreview"]
@@ -36,11 +36,12 @@ class EditPreview:
 
 
 class EditDocument:
-    """Mirror of the service's edit list, with an edit in progress on top.
+    """Mirror of the service's edit list, with an edit in progress: a new one on top, or one in its place.
 
     Attributes:
         revision: revision of the service's list.
         edits: the service's list, in order.
+        undone: edits that redoing would bring back, the next one first.
         can_undo: whether the service has something to undo.
         can_redo: whether it has something to redo.
     """
@@ -55,13 +56,13 @@ class EditDocument:
         self._grid = grid
         self._base = np.ascontiguousarray(z_b_base, dtype=np.float32)
         self._committed = self._base
-        self._committed_dirty: Rect | None = None
         self._stale: Rect | None = None
         self._draft: Edit | None = None
         self._draft_dirty: Rect | None = None
         self._draft_changed = False
         self.revision = 0
         self.edits: tuple[Edit, ...] = ()
+        self.undone: tuple[Edit, ...] = ()
         self.can_undo = False
         self.can_redo = False
         self._preview = EditPreview(self._base, np.zeros(self._base.shape, dtype=np.int8), None, 0)
@@ -76,22 +77,47 @@ class EditDocument:
         """The edit being drawn, if any."""
         return self._draft
 
-    def mirror(self, revision: int, edits: Sequence[Edit], can_undo: bool, can_redo: bool) -> None:
+    def mirror(
+        self,
+        revision: int,
+        edits: Sequence[Edit],
+        can_undo: bool,
+        can_redo: bool,
+        undone: Sequence[Edit] = (),
+    ) -> None:
         """Take over the list that the service reports.
 
         Raises:
             protocol.EditError: if an edit does not fit the terrain.
         """
-        edited = apply_edits(self._base, list(edits), self._grid)
-        self.revision, self.edits = revision, tuple(edits)
+        before, after = self.edits, tuple(edits)
+        kept = set(before) & set(after)
+        if [edit for edit in before if edit in kept] != [edit for edit in after if edit in kept]:
+            kept = set()
+        changed: Rect | None = None
+        # Edits that stay in their order leave the ground as it is but under the others.
+        for edit in (set(before) | set(after)) - kept:
+            changed = union_rect(changed, self._covered(edit))
+        if after != before:
+            self._committed = self.bed_of(after)
+        self.revision, self.edits, self.undone = revision, after, tuple(undone)
         self.can_undo, self.can_redo = can_undo, can_redo
-        self._stale = union_rect(self._stale, union_rect(self._committed_dirty, _rect(edited.dirty)))
-        self._committed, self._committed_dirty = edited.z_b, _rect(edited.dirty)
+        self._stale = union_rect(self._stale, changed)
+        self._draft_changed = True
 
     def set_draft(self, edit: Edit | None) -> None:
-        """Set, replace or (with None) drop the edit being drawn."""
-        self._draft_changed = self._draft_changed or edit != self._draft
-        self._draft = edit
+        """Set, replace or (with None) drop the edit in progress.
+
+        One that has the id of an edit of the list stands in the place of that edit.
+
+        Raises:
+            protocol.EditError: if it does not fit the terrain; nothing has changed then.
+        """
+        if edit == self._draft:
+            return
+        if edit is not None:
+            self._covered(edit)
+        self._draft, self._draft_changed = edit, True
 
     def bed_of(self, edits: Sequence[Edit]) -> npt.NDArray[np.float32]:
         """The bed of a run that was computed with a list of edits [m, datum-relative]."""
@@ -107,8 +133,7 @@ class EditDocument:
             return self._preview
         z_b, draft_dirty = self._committed, None
         if self._draft is not None:
-            edited = apply_edits(self._committed, [self._draft], self._grid)
-            z_b, draft_dirty = edited.z_b, _rect(edited.dirty)
+            z_b, draft_dirty = self._drafted(self._draft)
         dirty = union_rect(self._stale, union_rect(self._draft_dirty, draft_dirty))
         self._stale, self._draft_dirty, self._draft_changed = None, draft_dirty, False
         if dirty is None:
@@ -119,7 +144,17 @@ class EditDocument:
         self._preview = EditPreview(z_b, sign, dirty, self._preview.revision + 1)
         return self._preview
 
+    def _drafted(self, draft: Edit) -> tuple[npt.NDArray[np.float32], Rect | None]:
+        """The ground with the edit in progress, and where it differs from that of the list."""
+        place = next((at for at, edit in enumerate(self.edits) if edit.id == draft.id), None)
+        if place is None:
+            return apply_edits(self._committed, [draft], self._grid).z_b, self._covered(draft)
+        edits = (*self.edits[:place], draft, *self.edits[place + 1 :])
+        return self.bed_of(edits), union_rect(self._covered(self.edits[place]), self._covered(draft))
 
-def _rect(dirty: Rect | None) -> Rect | None:
-    """A rectangle of the protocol (rows, then columns) in the viewer's order (first corner, end corner)."""
-    return None if dirty is None else (dirty[0], dirty[2], dirty[1], dirty[3])
+    def _covered(self, edit: Edit) -> Rect | None:
+        """The rectangle that holds the cells of an edit."""
+        rows, cols, _ = rasterise_edit(edit, self._grid)
+        if not rows.size:
+            return None
+        return int(rows[0]), int(cols.min()), int(rows[-1]) + 1, int(cols.max()) + 1

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from protocol import Edit, EditArea, GridGeometry, apply_edits, rasterise_edit
+from protocol import Edit, EditArea, GridGeometry, edited_cells, rasterise_edit
 
 __all__ = ["EditMeasure", "measure_edits"]
 
@@ -42,15 +42,25 @@ def measure_edits(
     Raises:
         protocol.EditError: an edit does not fit the terrain.
     """
+    cells = [rasterise_edit(edit, grid) for edit in edits]
+    covered = [(rows, cols) for rows, cols, _ in cells if rows.size]
+    if not covered:
+        return tuple(
+            EditMeasure(_length(edit), 0.0, rows, cols)
+            for edit, (rows, cols, _) in zip(edits, cells, strict=True)
+        )
+    row0, col0 = (min(int(part[axis].min()) for part in covered) for axis in (0, 1))
+    row1, col1 = (max(int(part[axis].max()) for part in covered) + 1 for axis in (0, 1))
+    z = z_b[row0:row1, col0:col1].copy()  # what the edits cover, not the whole grid
     measures = []
-    for edit in edits:
-        rows, cols, _ = rasterise_edit(edit, grid)
-        edited = apply_edits(z_b, [edit], grid).z_b
-        rise = edited[rows, cols].astype(np.float64) - z_b[rows, cols]
+    for edit, (rows, cols, position) in zip(edits, cells, strict=True):
+        place = (rows - row0, cols - col0)
+        before = z[place]
+        z[place] = edited_cells(before, edit, position, grid)
+        rise = z[place].astype(np.float64) - before
         raised = rise > 0.0
         volume = float(rise.sum()) * grid.dx * grid.dx
         measures.append(EditMeasure(_length(edit), volume, rows[raised], cols[raised]))
-        z_b = edited
     return tuple(measures)
 
 

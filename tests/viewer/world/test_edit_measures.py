@@ -1,3 +1,5 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -55,3 +57,19 @@ def test_the_length_of_an_area_is_that_of_its_border() -> None:
     )
 
     assert measure_edits(FLAT, [area], GRID)[0].length == pytest.approx(600.0)
+
+
+def test_measuring_leaves_the_bed_as_it_was_and_copies_no_more_than_the_edits_cover() -> None:
+    grid = GridGeometry(2000, 2000, 1.0)
+    bed = np.zeros((2000, 2000), np.float32)
+    small = EditLine(
+        "small", ((1000.0, 1000.0), (1040.0, 1020.0)), 3.0, Operation.raise_, EditType.modulate, 2.0
+    )
+    tracemalloc.start()
+    (measure,) = measure_edits(bed, [small], grid)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+
+    assert measure.volume > 0.0
+    assert not bed.any()
+    assert peak < bed.nbytes / 20
