@@ -11,6 +11,7 @@ __all__ = [
     "CaseRow",
     "EditRow",
     "EditSettings",
+    "LegendRow",
     "PointReadout",
     "RunRow",
     "ViewStatus",
@@ -109,6 +110,14 @@ class EditSettings:
 
 
 @dataclass(frozen=True)
+class LegendRow:
+    """A class of the water: sRGB colour and what it stands for."""
+
+    colour: tuple[int, int, int]
+    text: str
+
+
+@dataclass(frozen=True)
 class PointReadout:
     """Water and ground at a map point: depth [m], water level and ground elevation [m above the datum]."""
 
@@ -134,6 +143,10 @@ class ViewStatus:
         computed_until: time of the newest frame of the shown run [s].
         branch_time: where the shown run left its parent [s], None when it has none.
         speed_x_real_time: simulated seconds per wall second of the computation.
+        water_colour: what the water is to be coloured by.
+        water_colours: what the shown run lets it be coloured by.
+        water_note: why the colours wanted are not there yet, one sentence.
+        legend: classes on the picture, lowest first; empty for natural water.
         recalculate_latency_s: from the last Recalculate to its first changed frame on the picture [s].
         depth_record: (times [s], depths [m]) at the probed point, frames loaded so far.
     """
@@ -176,3 +189,8 @@ class ViewStatus:
     speed_x_real_time: float | None = None
     volume_error_relative: float | None = None
     options: tuple[tuple[str, bool | float | str], ...] = ()
+    water_colour: str = "natural"
+    water_colours: tuple[str, ...] = ("natural", "depth")
+    water_note: str = ""
+    legend: tuple[LegendRow, ...] = ()
+    flow_arrows: bool = False

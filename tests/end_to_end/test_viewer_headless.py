@@ -204,8 +204,8 @@ picture = "thirty.png"
 
 [[step]]
 command = "SetOption"
-name = "depth_classes"
-value = true
+name = "water_colour"
+value = "depth"
 picture = "classes.png"
 """,
         encoding="utf-8",

@@ -242,7 +242,7 @@ def _step(app: ViewerApp, index: int) -> bool:
 
 def _top_view(session: HeadlessSession) -> None:
     app = session.app
-    app.carry_out(SetOption("depth_classes", True))
+    app.carry_out(SetOption("water_colour", "depth"))
     app.carry_out(TopView())
 
 

@@ -6,8 +6,9 @@ import dataclasses
 import math
 
 from viewer.commands import CommandError
-from viewer.render import RenderOptions, WaterStyle
+from viewer.render import RenderOptions
 from viewer.units import UNITS
+from viewer.world import WaterColour
 
 __all__ = ["OPTION_NAMES", "changed_options"]
 
@@ -20,6 +21,7 @@ _SWITCHES = (
     "show_imagery",
     "full_mesh",
     "fog",
+    "flow_arrows",
 )
 _NUMBERS = {
     "exaggeration": (0.1, 20.0),
@@ -28,7 +30,7 @@ _NUMBERS = {
     "light_azimuth_deg": (0.0, 360.0),
     "light_elevation_deg": (5.0, 90.0),
 }
-OPTION_NAMES = (*_SWITCHES, *_NUMBERS, "depth_classes", "units")
+OPTION_NAMES = (*_SWITCHES, *_NUMBERS, "water_colour", "units")
 
 
 def changed_options(options: RenderOptions, name: str, value: bool | float | str) -> RenderOptions:
@@ -37,9 +39,13 @@ def changed_options(options: RenderOptions, name: str, value: bool | float | str
     Raises:
         CommandError: an unknown name or a value that is not allowed.
     """
-    if name == "depth_classes" and isinstance(value, bool):
-        style = WaterStyle.DEPTH_CLASSES if value else WaterStyle.NATURAL
-        return dataclasses.replace(options, water_style=style)
+    if name == "water_colour":
+        known = [colour.value for colour in WaterColour]
+        if value not in known:
+            raise CommandError(
+                f"option water_colour = {value!r} is not allowed; allowed are {', '.join(known)}"
+            )
+        return dataclasses.replace(options, water_colour=WaterColour(value))
     if name == "units":
         if isinstance(value, str) and value in UNITS:
             return dataclasses.replace(options, units=UNITS[value])

@@ -26,6 +26,7 @@ from viewer.app.shown_run import ShownRun
 from viewer.app.status_report import program_status, run_status
 from viewer.app.view_options import changed_options
 from viewer.app.water_feed import WaterFeed
+from viewer.app.water_view import WaterView
 from viewer.commands import (
     Command,
     CommandError,
@@ -109,6 +110,7 @@ class ViewerApp:
         self._status = ViewStatus()
         self._map_maker = MapMaker()
         self._levee_watch = LeveeWatch()
+        self.water = WaterView()
         self.comparison = Comparison(self.desk, loader, self.feed, self.control.resubscribe)
         self.control.resuming = self.comparison.return_stream
 
@@ -199,6 +201,7 @@ class ViewerApp:
             if not self.control.is_held:
                 changed |= self.feed.advance(shown, self.clock.time)
             changed |= self.comparison.advance(shown)
+            changed |= self.water.advance(shown, self.options)
             self._status_stale |= self._levee_watch.look(shown, self.feed, self.options.depth_shown)
         if changed:
             self._status_stale = True
@@ -254,7 +257,7 @@ class ViewerApp:
         if self.shown is None or self.camera_work is None:
             return None
         self._drawn_text = self._text(self.shown)
-        return FrameInputs(
+        inputs = FrameInputs(
             camera=self.camera_work.camera,
             water=self.feed.pair,
             edits=edit_overlay(self.shown, self.control.editing.drawing),
@@ -263,6 +266,7 @@ class ViewerApp:
             difference=self.comparison.difference,
             is_outdated=not self.desk.is_open,
         )
+        return self.water.dressed(inputs)
 
     def note_painted(self, size: tuple[int, int]) -> None:
         """The inputs given last are on the picture; the latency of a recalculation ends here."""
@@ -335,6 +339,7 @@ class ViewerApp:
         if self.shown is None:
             return status
         status = run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch)
+        status = self.water.told(status, self.options)
         other = self.comparison.other
         compared = dataclasses.replace(status, compared_run=None if other is None else other.run)
         return self.pointing.report(compared, self.shown)

@@ -53,7 +53,7 @@ class KeptSettings:
         return {
             name: value
             for name, value in self._mapping("picture/options").items()
-            if isinstance(value, bool) or (isinstance(value, float) and math.isfinite(value))
+            if isinstance(value, (bool, str)) or (isinstance(value, float) and math.isfinite(value))
         }
 
     def keep_options(self, options: dict[str, OptionValue]) -> None:

@@ -43,6 +43,7 @@ from viewer.gui.run_panel import RunPanel
 from viewer.gui.scene_widget import SceneWidget
 from viewer.gui.status_line import StatusLine
 from viewer.gui.view_menu import ViewMenu
+from viewer.gui.water_panel import WaterPanel
 from viewer.view_status import ViewStatus
 
 __all__ = ["MainWindow"]
@@ -86,6 +87,7 @@ class MainWindow(QMainWindow):
         self.edit_panel = EditPanel(self._dispatch)
         self.run_panel = RunPanel(self._dispatch)
         self.depth_plot = DepthPlot()
+        self.water_panel = WaterPanel(self._dispatch)
         self.status_line = StatusLine()
         self.setStatusBar(self.status_line)
         middle = QWidget()
@@ -99,9 +101,10 @@ class MainWindow(QMainWindow):
             self._dock("Runs", self.run_panel, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Terrain edits", self.edit_panel, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Depth at a point", self.depth_plot, Qt.DockWidgetArea.RightDockWidgetArea),
+            self._dock("Water", self.water_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
         ]
-        self.resizeDocks(self.docks, [DOCK_WIDTH] * len(self.docks), Qt.Orientation.Horizontal)
-        self.resizeDocks(self.docks, [310, 330, 240], Qt.Orientation.Vertical)
+        self.resizeDocks(self.docks[:3], [DOCK_WIDTH] * 3, Qt.Orientation.Horizontal)
+        self.resizeDocks(self.docks[:3], [310, 330, 240], Qt.Orientation.Vertical)
         self.view_menu = ViewMenu(self._dispatch, self._keep_view, self)
         self.view_menu.map_shown.toggled.connect(self.reference_map.setVisible)
         self._make_menus()
@@ -127,6 +130,7 @@ class MainWindow(QMainWindow):
             self.edit_panel.show_status(status)
             self.run_panel.show_status(status)
             self.depth_plot.show_status(status)
+            self.water_panel.show_status(status)
             self.setWindowTitle(f"{status.title or 'no run'} - Flood Emergency Visualizer")
             self.scene.setCursor(
                 Qt.CursorShape.CrossCursor if status.is_drawing else Qt.CursorShape.ArrowCursor
@@ -227,6 +231,7 @@ class MainWindow(QMainWindow):
         edits.addAction(self.edit_panel.redo)
         edits.addSeparator()
         edits.addAction(self.edit_panel.recalculate)
+        self.view_menu.add_first([self.water_panel.next_colour, self.water_panel.toggle_arrows])
         self.menuBar().addMenu(self.view_menu)
         self.view_menu.add_docks(self.docks)
 

@@ -12,7 +12,7 @@ from viewer.gui.conductor import Dispatch
 
 __all__ = ["OptionValue", "ViewMenu"]
 
-OptionValue = bool | float
+OptionValue = bool | float | str
 
 EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0)
 TAUS_PX = (0.5, 1.0, 2.0, 4.0, 8.0)
@@ -47,7 +47,6 @@ class ViewMenu(QMenu):
             "Contours", "contour_interval", CONTOUR_INTERVALS_M, 0.0, lambda v: f"{v:g} m" if v else "off"
         )
         self._choice("Terrain error", "tau_px", TAUS_PX, 2.0, lambda v: f"{v:g} px")
-        self._switch("Depth classes", "depth_classes", "C")
         self._switch("Wireframe", "wireframe", "F")
         self._switch("Level-of-detail blocks", "show_blocks", None)
         self.addSeparator()
@@ -61,6 +60,11 @@ class ViewMenu(QMenu):
         for dock in docks:
             self.addAction(dock.toggleViewAction())
 
+    def add_first(self, actions: list[QAction]) -> None:
+        """Offer actions of panels above the entries of this menu."""
+        self.insertActions(self.actions()[0], actions)
+        self.insertSeparator(self.actions()[len(actions)])
+
     def options(self) -> dict[str, OptionValue]:
         """Return what is chosen, by option name."""
         chosen: dict[str, OptionValue] = {name: action.isChecked() for name, action in self._switches.items()}
@@ -73,7 +77,7 @@ class ViewMenu(QMenu):
         for name, value in options.items():
             if name in self._switches and isinstance(value, bool):
                 self._switches[name].setChecked(value)
-            action = self._choices.get(name, {}).get(float(value))
+            action = None if isinstance(value, str) else self._choices.get(name, {}).get(float(value))
             if action is not None and not action.isChecked():
                 action.trigger()
 

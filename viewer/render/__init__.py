@@ -2,6 +2,8 @@
 
 from viewer.render.context import check_context, create_headless_context
 from viewer.render.frame_inputs import (
+    CellField,
+    Colouring,
     DepthDifference,
     DrapedLine,
     EditOverlay,
@@ -12,12 +14,13 @@ from viewer.render.frame_inputs import (
     RenderOptions,
     WaterFrame,
     WaterPair,
-    WaterStyle,
 )
 from viewer.render.picking import Unprojection, march_ray
 from viewer.render.renderer import Renderer
 
 __all__ = [
+    "CellField",
+    "Colouring",
     "DepthDifference",
     "DrapedLine",
     "EditOverlay",
@@ -30,7 +33,6 @@ __all__ = [
     "Unprojection",
     "WaterFrame",
     "WaterPair",
-    "WaterStyle",
     "check_context",
     "create_headless_context",
     "march_ray",

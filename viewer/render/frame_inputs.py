@@ -11,8 +11,11 @@ import numpy.typing as npt
 
 from viewer.units import METRIC, Units
 from viewer.world.camera import Camera
+from viewer.world.water_scales import ClassScale, WaterColour
 
 __all__ = [
+    "CellField",
+    "Colouring",
     "DepthDifference",
     "DrapedLine",
     "EditOverlay",
@@ -23,18 +26,8 @@ __all__ = [
     "RenderOptions",
     "WaterFrame",
     "WaterPair",
-    "WaterStyle",
     "same_marks",
 ]
-
-
-class WaterStyle(Enum):
-    """How water is coloured."""
-
-    NATURAL = "natural"
-    """Reflection, refraction and absorption with depth."""
-    DEPTH_CLASSES = "depth_classes"
-    """The classes of `viewer.world.depth_classes`, with a legend on the picture."""
 
 
 class LineStyle(Enum):
@@ -107,6 +100,28 @@ class DepthDifference:
 
 
 @dataclass(frozen=True)
+class CellField:
+    """One value a cell."""
+
+    key: Hashable
+    """Names this field: equal keys mean equal arrays, which are then uploaded once."""
+    values: npt.NDArray[np.float32]
+    """Shape [nrows, ncols]."""
+
+
+@dataclass(frozen=True)
+class Colouring:
+    """Classes in which the water is coloured instead of its natural look, with a legend on the picture."""
+
+    colour: WaterColour
+    """Not natural."""
+    scale: ClassScale
+    fields: tuple[CellField, ...] = ()
+    """Depth: none. Speed and hazard: the speeds of both frames of the water [m/s]. Else one field of the
+    whole run, negative where water never came; it colours dry ground too."""
+
+
+@dataclass(frozen=True)
 class HudText:
     """What is written on the picture, in the window and headless alike."""
 
@@ -143,6 +158,8 @@ class RenderOptions:
     """Fit block edges to coarser neighbours; without it cracks open (for tests and demonstrations)."""
     cull: bool = True
     """Leave out blocks outside of the view."""
+    quadtree: bool | None = None
+    """Find the blocks in view by the quadtree; None does so on large maps. It changes no picture."""
     cull_covered_terrain: bool = True
     """Leave out terrain under fully wet blocks."""
     classify_water: bool = True
@@ -159,7 +176,10 @@ class RenderOptions:
     """Use the imagery texture, if there is one."""
     contour_interval: float = 0.0
     """Height between contour lines [m]; 0 for none."""
-    water_style: WaterStyle = WaterStyle.NATURAL
+    water_colour: WaterColour = WaterColour.NATURAL
+    """What water is to be coloured by; `FrameInputs.colouring` brings it once its values are at hand."""
+    flow_arrows: bool = False
+    """Whether the user wants arrows of the flow; `FrameInputs.flow` brings them once they are at hand."""
     depth_shown: float = 0.01
     """Water shallower than this is not drawn [m]."""
     light_azimuth_deg: float = 315.0
@@ -192,6 +212,8 @@ class FrameInputs:
     hud: HudText | None = None
     difference: DepthDifference | None = None
     """Colours ground and water by the difference to another run."""
+    colouring: Colouring | None = None
+    """Colours the water in classes; None leaves it natural."""
     is_outdated: bool = False
     """The flood may have gone on unseen, say since the service is gone: the scene is drawn in grey."""
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from viewer.errors import TerrainDataError
+from viewer.render.colouring_textures import ColouringTextures
 from viewer.render.difference_texture import DifferenceTexture
 from viewer.render.frame_inputs import EditOverlay, same_marks
 from viewer.render.shader_library import build_program, set_uniforms
@@ -71,6 +72,7 @@ class GroundTextures:
         self._edits: EditOverlay | None = None
         self._detail = _detail_texture(ctx)
         self.difference = DifferenceTexture(ctx, (nrows, ncols))
+        self.colouring = ColouringTextures(ctx, (nrows, ncols))
 
         scale = 1.0
         if self._imagery is not None:
@@ -109,18 +111,20 @@ class GroundTextures:
         return dirty
 
     def bind(self, program: moderngl.Program) -> None:
-        """Bind what `shaders/common/ground.glsl` and `difference.glsl` ask for, and the heights."""
+        """Bind what `ground.glsl`, `difference.glsl` and `water_classes.glsl` ask for, and the heights."""
         textures = (self.height, self.colour, self.mask, self._detail)
         for unit, (name, texture) in enumerate(zip(_SAMPLERS, textures, strict=True)):
             texture.use(unit)
             set_uniforms(program, **{name: unit})
         set_uniforms(program, has_edits=int(self._edits is not None))
         self.difference.bind(program)
+        self.colouring.bind(program)
 
     def release(self) -> None:
         """Give the memory back."""
-        textures = (self.colour, self.mask, self.height, self._detail, self._imagery, self.difference)
-        for thing in (self._array, self._program, self._target, *textures):
+        textures = (self.colour, self.mask, self.height, self._detail, self._imagery)
+        followers = (self.difference, self.colouring)
+        for thing in (self._array, self._program, self._target, *followers, *textures):
             if thing is not None:
                 thing.release()
 

@@ -8,7 +8,7 @@ from functools import cache
 from PIL import Image, ImageDraw, ImageFont
 
 from viewer.units import METRIC, Units
-from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, depth_class_labels
+from viewer.world.water_scales import ClassScale
 
 __all__ = [
     "banner_panel",
@@ -88,12 +88,11 @@ def natural_water_colour(depth: float) -> tuple[int, int, int]:
     return (colour[0], colour[1], colour[2])
 
 
-def legend_panel(scale: float) -> Image.Image:
-    """The depth classes with their limits in metres."""
-    labels = depth_class_labels()
+def legend_panel(classes: ClassScale, scale: float) -> Image.Image:
+    """The classes by which water is coloured."""
+    labels, heading = classes.labels, classes.heading
     size, row = round(15 * scale), round(22 * scale)
     margin, box = round(_MARGIN * scale), round(26 * scale)
-    heading = "Water depth [m]"
     width = max(
         _extent(heading, size)[0], box + round(10 * scale) + max(_extent(text, size)[0] for text in labels)
     )
@@ -101,7 +100,7 @@ def legend_panel(scale: float) -> Image.Image:
     draw.text((margin, margin), heading, font=_font(size), fill=_INK)
     # Deep on top, as water stands.
     for k, (text, colour) in enumerate(
-        zip(reversed(labels), reversed(DEPTH_CLASS_COLOURS), strict=True), start=1
+        zip(reversed(labels), reversed(classes.colours), strict=True), start=1
     ):
         y = margin + k * row
         draw.rectangle((margin, y + 2, margin + box, y + row - 3), fill=(*colour, 255))

@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 from viewer.render import hud_panels
-from viewer.render.frame_inputs import FrameInputs, HudText, WaterStyle
+from viewer.render.frame_inputs import FrameInputs, HudText
 from viewer.render.shader_library import build_program, set_uniforms
 from viewer.world.camera import Camera
 
@@ -84,9 +84,12 @@ class HudPass:
             self._blit(texture, size, edge, edge)
             draws += 1
         if hud.legend and inputs.water is not None and inputs.options.show_water:
-            by_class = inputs.options.water_style is WaterStyle.DEPTH_CLASSES
-            make = hud_panels.legend_panel if by_class else hud_panels.depth_ramp_panel
-            texture = self._panel("legend", (by_class, scale), lambda: make(scale))
+            classes = None if inputs.colouring is None else inputs.colouring.scale
+            if classes is None:
+                make = partial(hud_panels.depth_ramp_panel, scale)
+            else:
+                make = partial(hud_panels.legend_panel, classes, scale)
+            texture = self._panel("legend", (classes, scale), make)
             self._blit(texture, size, edge, size[1] - texture.height - edge)
             draws += 1
         if inputs.difference is not None:

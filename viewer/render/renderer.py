@@ -111,6 +111,7 @@ class Renderer:
         if dirty is not None:
             self._lod.refresh(dirty)
         self._ground.difference.follow(inputs.difference)
+        self._ground.colouring.follow(inputs.colouring)
         self._lod.follow_edits(inputs.edits)
         self._sky.follow(sun)
         water = inputs.water if options.show_water else None

@@ -13,11 +13,10 @@ import numpy.typing as npt
 
 from viewer.lod.block_tiling import BlockTiling
 from viewer.render.block_mesh import BlockIndices, BlockInstances
-from viewer.render.frame_inputs import RenderOptions, WaterStyle
+from viewer.render.frame_inputs import RenderOptions
 from viewer.render.ground_textures import GroundTextures
 from viewer.render.shader_library import build_program, set_uniforms
 from viewer.render.water_textures import WaterSlot, bind_slots
-from viewer.world.depth_classes import DEPTH_CLASS_COLOURS, DEPTH_CLASS_LIMITS
 
 __all__ = ["WaterPass", "ripple_slopes"]
 
@@ -53,11 +52,6 @@ class WaterPass:
         self._ctx = ctx
         self._program = build_program(ctx, "water.vert", "water.frag")
         set_uniforms(self._program, **_OWN_UNITS)
-        set_uniforms(
-            self._program,
-            class_limits=list(DEPTH_CLASS_LIMITS),
-            class_colours=[tuple(c / 255.0 for c in colour) for colour in DEPTH_CLASS_COLOURS],
-        )
         self._blocks = BlockInstances(ctx, self._program, indices, tiling.block_count)
         self._ripples = ctx.texture((_RIPPLE_SIDE, _RIPPLE_SIDE), 2, ripple_slopes())
         self._ripples.build_mipmaps()
@@ -82,11 +76,7 @@ class WaterPass:
         self._ctx.enable_only(moderngl.DEPTH_TEST)
         self._ctx.depth_func = "<="
         self._ctx.wireframe = options.wireframe
-        set_uniforms(
-            self._program,
-            snap_edges=int(options.snap_edges),
-            depth_classes=int(options.water_style is WaterStyle.DEPTH_CLASSES),
-        )
+        set_uniforms(self._program, snap_edges=int(options.snap_edges))
         draws = self._blocks.draw(by_level)
         self._ctx.wireframe = False
         return draws

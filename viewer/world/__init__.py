@@ -2,12 +2,6 @@
 
 from viewer.world.camera import Camera, GroundHeight, overview
 from viewer.world.coordinates import Point, WorldFrame
-from viewer.world.depth_classes import (
-    DEPTH_CLASS_COLOURS,
-    DEPTH_CLASS_LIMITS,
-    depth_class,
-    depth_class_labels,
-)
 from viewer.world.edit_document import EditDocument, EditPreview
 from viewer.world.edit_measures import EditMeasure, measure_edits
 from viewer.world.frame_cache import FrameCache
@@ -17,13 +11,21 @@ from viewer.world.orbit_motion import Flight, Move, OrbitMotion
 from viewer.world.playback_clock import PlaybackClock
 from viewer.world.probe import ProbeReading, probe
 from viewer.world.reference_map import MapView, flood_extent, ground_in_view, relief_map
+from viewer.world.water_scales import (
+    DEPTH_SCALE,
+    ClassScale,
+    WaterColour,
+    arrival_scale,
+    hazard_rating,
+    water_scale,
+)
 from viewer.world.water_timeline import Bracket, WaterTimeline
 
 __all__ = [
-    "DEPTH_CLASS_COLOURS",
-    "DEPTH_CLASS_LIMITS",
+    "DEPTH_SCALE",
     "Bracket",
     "Camera",
+    "ClassScale",
     "EditDocument",
     "EditMeasure",
     "EditPreview",
@@ -39,15 +41,17 @@ __all__ = [
     "Point",
     "ProbeReading",
     "Rect",
+    "WaterColour",
     "WaterTimeline",
     "WorldFrame",
-    "depth_class",
-    "depth_class_labels",
+    "arrival_scale",
     "flood_extent",
     "ground_in_view",
+    "hazard_rating",
     "measure_edits",
     "overview",
     "probe",
     "relief_map",
     "union_rect",
+    "water_scale",
 ]

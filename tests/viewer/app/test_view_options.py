@@ -2,7 +2,8 @@ import pytest
 
 from viewer.app.view_options import OPTION_NAMES, changed_options
 from viewer.commands import CommandError
-from viewer.render import RenderOptions, WaterStyle
+from viewer.render import RenderOptions
+from viewer.world import WaterColour
 
 
 def test_an_option_is_set_by_its_name() -> None:
@@ -10,14 +11,12 @@ def test_an_option_is_set_by_its_name() -> None:
 
     assert options.exaggeration == 2.0
     assert changed_options(options, "wireframe", True).wireframe
-    assert changed_options(options, "depth_classes", True).water_style is WaterStyle.DEPTH_CLASSES
-    assert changed_options(options, "depth_classes", False).water_style is WaterStyle.NATURAL
+    assert changed_options(options, "water_colour", "hazard").water_colour is WaterColour.HAZARD
+    assert changed_options(options, "flow_arrows", True).flow_arrows
 
 
 def test_every_name_is_an_option_of_the_renderer() -> None:
-    fields = set(RenderOptions.__dataclass_fields__) | {"depth_classes"}
-
-    assert set(OPTION_NAMES) <= fields
+    assert set(OPTION_NAMES) <= set(RenderOptions.__dataclass_fields__)
 
 
 @pytest.mark.parametrize(
@@ -29,6 +28,8 @@ def test_every_name_is_an_option_of_the_renderer() -> None:
         ("wireframe", 1),
         ("x", 1),
         ("fog", "on"),
+        ("water_colour", "taste"),
+        ("water_colour", True),
     ],
 )
 def test_a_wrong_value_is_refused(name: str, value: object) -> None:

@@ -45,14 +45,20 @@ def test_entries_make_their_commands(menu: ViewMenu, record: Recorder, kept: lis
 def test_options_chosen_come_back_and_are_told(menu: ViewMenu, record: Recorder) -> None:
     before = menu.options()
     assert before["exaggeration"] == 1.0
-    assert before["depth_classes"] is False
-    menu.choose({"exaggeration": 3.0, "depth_classes": True, "wireframe": False})
+    assert before["show_blocks"] is False
+    menu.choose({"exaggeration": 3.0, "show_blocks": True, "wireframe": False})
 
-    assert menu.options() == {**before, "exaggeration": 3.0, "depth_classes": True}
+    assert menu.options() == {**before, "exaggeration": 3.0, "show_blocks": True}
     assert set(map(repr, record.commands)) == {
         repr(SetOption("exaggeration", 3.0)),
-        repr(SetOption("depth_classes", True)),
+        repr(SetOption("show_blocks", True)),
     }
+
+
+def test_actions_of_panels_stand_first(menu: ViewMenu, window: QWidget) -> None:
+    menu.add_first([QAction("Colours", window), QAction("Arrows", window)])
+
+    assert [action.text() for action in menu.actions()[:4]] == ["Colours", "Arrows", "", "Whole terrain"]
 
 
 def test_what_the_menu_does_not_offer_is_not_chosen(menu: ViewMenu, record: Recorder) -> None:

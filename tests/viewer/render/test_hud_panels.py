@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from viewer.render import hud_panels
-from viewer.world import DEPTH_CLASS_COLOURS
+from viewer.world import DEPTH_SCALE
 
 
 def pixels(image) -> np.ndarray:
@@ -37,9 +37,9 @@ def test_the_north_arrow_points_against_the_bearing() -> None:
 
 
 def test_the_legend_shows_every_class_with_the_deepest_on_top() -> None:
-    image = pixels(hud_panels.legend_panel(1.0))
+    image = pixels(hud_panels.legend_panel(DEPTH_SCALE, 1.0))
     rows = [
-        np.argwhere((image[..., :3] == colour).all(axis=2))[:, 0].mean() for colour in DEPTH_CLASS_COLOURS
+        np.argwhere((image[..., :3] == colour).all(axis=2))[:, 0].mean() for colour in DEPTH_SCALE.colours
     ]
 
     assert rows == sorted(rows, reverse=True)

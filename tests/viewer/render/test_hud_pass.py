@@ -4,8 +4,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from viewer.render import FrameInputs, HudText, RenderOptions, WaterFrame, WaterPair, WaterStyle, hud_panels
-from viewer.world import Camera, Heightfield
+from viewer.render import Colouring, FrameInputs, HudText, WaterFrame, WaterPair, hud_panels
+from viewer.world import DEPTH_SCALE, Camera, Heightfield, WaterColour
 
 pytestmark = pytest.mark.gl
 CAMERA = Camera((0.0, 40.0, 0.0), 2000.0, 0.9, 0.6)
@@ -65,8 +65,8 @@ def test_the_legend_needs_water_and_follows_its_style(stage, hilly: Heightfield)
 
     frame = WaterFrame("w", np.ones(hilly.z_b.shape, dtype=np.float32))
     ramp = changed(stage, hud, water=WaterPair(frame, frame))
-    options = RenderOptions(water_style=WaterStyle.DEPTH_CLASSES)
-    classes = changed(stage, hud, water=WaterPair(frame, frame), options=options)
+    colouring = Colouring(WaterColour.DEPTH, DEPTH_SCALE)
+    classes = changed(stage, hud, water=WaterPair(frame, frame), colouring=colouring)
     assert ramp[250:, :200].any()
     assert classes.sum() > ramp.sum()
 

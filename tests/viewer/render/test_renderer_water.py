@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ from viewer.render import (
     RenderOptions,
     WaterFrame,
     WaterPair,
-    WaterStyle,
 )
 from viewer.world import Camera, Heightfield
 
@@ -166,22 +164,6 @@ def test_the_same_frame_drawn_again_is_the_same_picture(hilly: Heightfield, make
     inputs = FrameInputs(VIEWS[4], WaterPair(frame, frame), hud=HudText(title="a", time="b"))
 
     assert np.array_equal(stage.draw(inputs), stage.draw(inputs))
-
-
-def test_depth_classes_have_the_colours_of_the_legend(hilly: Heightfield, make_stage: Callable) -> None:
-    stage = make_stage(hilly)
-    camera = Camera((0.0, 0.0, 0.0), 500.0, 0.0, math.pi / 2)
-    means = []
-    for depth in (0.1, 0.4, 0.9, 5.0):
-        frame = WaterFrame(depth, np.full(hilly.z_b.shape, depth, dtype=np.float32))
-        options = RenderOptions(water_style=WaterStyle.DEPTH_CLASSES, **BARE)
-        means.append(
-            stage.draw(FrameInputs(camera, WaterPair(frame, frame), options=options)).mean(axis=(0, 1))
-        )
-
-    assert all(earlier.sum() > later.sum() + 40.0 for earlier, later in pairwise(means))
-    assert means[0][0] > means[0][2] + 30.0  # shallow is yellow
-    assert means[3][2] > means[3][1] + 20.0  # deep is purple
 
 
 def test_a_raised_preview_stands_out_of_the_water_at_an_unchanged_level(

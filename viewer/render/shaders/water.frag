@@ -3,6 +3,8 @@
 #include "common/frame.glsl"
 #include "common/ground.glsl"
 #include "common/difference.glsl"
+#include "common/water_depth.glsl"
+#include "common/water_classes.glsl"
 in vec2 uv;
 in vec3 world;
 in float depth;
@@ -10,9 +12,6 @@ in vec2 slope;
 in float clear_air;
 uniform samplerCube sky;
 uniform sampler2D ripples;       // slopes of small waves, tiled
-uniform int depth_classes;       // 0 natural, 1 classes
-uniform float class_limits[6];
-uniform vec3 class_colours[7];
 out vec4 colour;
 
 const vec3 ABSORPTION = vec3(0.95, 0.38, 0.30); // [1/m]
@@ -20,13 +19,16 @@ const vec3 SCATTER_SHALLOW = vec3(0.27, 0.48, 0.53);
 const vec3 SCATTER_DEEP = vec3(0.06, 0.21, 0.37);
 const float F0 = 0.0204;                        // ((1 - 1.333) / (1 + 1.333))^2
 
-vec3 class_colour(float h) {
-    float soft = max(fwidth(h), 1e-4);
-    vec3 c = class_colours[0];
-    for (int k = 0; k < 6; ++k) {
-        c = mix(c, class_colours[k + 1], smoothstep(-0.5, 0.5, (h - class_limits[k]) / soft));
-    }
-    return c;
+// A dry cell has no class, though the surface of its neighbours may run out over its rim.
+int class_here() {
+    if (coloured_by == 0) return NO_CLASS;
+    if (coloured_by == 4) return class_of_whole_run(uv);
+    ivec2 cell = cell_at(uv);
+    float h = computed_depth(cell);
+    if (h <= 0.0) return NO_CLASS;
+    if (coloured_by == 1) return class_of(h);
+    float speed = mix(texelFetch(field_first, cell, 0).r, texelFetch(field_second, cell, 0).r, alpha);
+    return class_of(coloured_by == 2 ? speed : hazard_rating(h, speed));
 }
 
 void main() {
@@ -52,11 +54,11 @@ void main() {
     vec3 bottom = ground_at(bottom_uv, (world.y - vertical.y) / vertical.x + vertical.y - depth);
 
     vec3 surface;
-    if (depth_classes == 1) {
-        vec3 tint = class_colour(depth);
-        float shade = 0.80 + 0.25 * dot(normal, sun.xyz);
-        surface = mix(bottom, tint * shade, 0.86 * edge);
-        surface += edge * 0.12 * fresnel * texture(sky, reflect(sight, normal)).rgb;
+    int k = class_here();
+    if (k != NO_CLASS) {
+        // Flat, so that a colour is read off the legend; a little light keeps the surface a surface.
+        float shade = 0.96 + 0.10 * (dot(normal, sun.xyz) - sun.y);
+        surface = mix(bottom, class_colours[k] * shade, 0.94);
     } else {
         vec3 through = exp(-ABSORPTION * path * 0.75);
         vec3 scatter = mix(SCATTER_SHALLOW, SCATTER_DEEP, 1.0 - exp(-depth * 0.22));
