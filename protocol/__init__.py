@@ -8,8 +8,16 @@ from __future__ import annotations
 
 from protocol import limits
 from protocol.blocks import BLOCK_STRIDE, BlockLayout, BlockState
-from protocol.client_session import ClientEvent, ClientSession, SessionState, TerrainReceived
-from protocol.codec import operation, pack, unpack_client, unpack_frame, unpack_server
+from protocol.channel_codec import (
+    CHANNEL_FIELDS,
+    CHANNEL_NAMES,
+    DecodedChannel,
+    channel_parts,
+    decode_channel,
+    encode_channel,
+)
+from protocol.client_session import ChannelReceived, ClientEvent, ClientSession, SessionState, TerrainReceived
+from protocol.codec import operation, pack, unpack_channel, unpack_client, unpack_frame, unpack_server
 from protocol.depth_codec import choose_depth_scale, depth_error_bound, dequantise_depth, quantise_depth
 from protocol.edits import (
     Edit,
@@ -21,6 +29,7 @@ from protocol.edits import (
     Operation,
     apply_edits,
     check_edit,
+    edited_cells,
     rasterise_edit,
 )
 from protocol.errors import (
@@ -29,7 +38,6 @@ from protocol.errors import (
     FrameError,
     GridError,
     InvalidMessage,
-    edited_cells,
     MalformedMessage,
     MissingKeyFrame,
     Overloaded,
@@ -49,6 +57,9 @@ from protocol.messages import (
     CaseList,
     CaseSummary,
     ChangeForcing,
+    Channel,
+    ChannelName,
+    ChannelPart,
     ClientMessage,
     Command,
     ControlChanged,
@@ -61,6 +72,7 @@ from protocol.messages import (
     ForcingChanged,
     Frame,
     FramePart,
+    GetChannel,
     GetTerrain,
     GridInfo,
     Hello,
@@ -107,6 +119,8 @@ from protocol.version import CAPABILITIES, PROTOCOL_VERSION, SUPPORTED_VERSIONS,
 __all__ = [
     "BLOCK_STRIDE",
     "CAPABILITIES",
+    "CHANNEL_FIELDS",
+    "CHANNEL_NAMES",
     "PROTOCOL_VERSION",
     "SUPPORTED_VERSIONS",
     "Ack",
@@ -117,15 +131,18 @@ __all__ = [
     "CaseList",
     "CaseSummary",
     "ChangeForcing",
+    "Channel",
+    "ChannelName",
+    "ChannelPart",
+    "ChannelReceived",
     "ClientEvent",
-    "CHANNEL_FIELDS",
-    "CHANNEL_NAMES",
     "ClientMessage",
     "ClientSession",
     "Command",
     "ControlChanged",
     "ControlRequested",
     "Credit",
+    "DecodedChannel",
     "DecodedFrame",
     "DeleteEdit",
     "DeleteRun",
@@ -148,6 +165,7 @@ __all__ = [
     "FrameEncoder",
     "FrameError",
     "FramePart",
+    "GetChannel",
     "GetTerrain",
     "GridError",
     "GridGeometry",
@@ -202,12 +220,16 @@ __all__ = [
     "Welcome",
     "WireLimits",
     "apply_edits",
+    "channel_parts",
     "check_edit",
     "check_forcing",
     "choose_depth_scale",
+    "decode_channel",
     "decode_terrain",
     "depth_error_bound",
     "dequantise_depth",
+    "edited_cells",
+    "encode_channel",
     "encode_terrain",
     "limits",
     "negotiate",
@@ -216,6 +238,7 @@ __all__ = [
     "peek_frame",
     "quantise_depth",
     "rasterise_edit",
+    "unpack_channel",
     "unpack_client",
     "unpack_frame",
     "unpack_server",

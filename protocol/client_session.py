@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
-from protocol.codec import operation, pack, unpack_frame, unpack_server
+from protocol.codec import operation, pack, unpack_channel, unpack_frame, unpack_server
 from protocol.depth_codec import FloatArray
 from protocol.errors import InvalidMessage, Overloaded, SequenceError, VersionMismatch
-from protocol.limits import MAX_FRAME_BYTES, MAX_PENDING_COMMANDS, MAX_TERRAIN_BYTES
+from protocol.limits import MAX_CHANNEL_BYTES, MAX_FRAME_BYTES, MAX_PENDING_COMMANDS, MAX_TERRAIN_BYTES
 from protocol.messages import (
     Ack,
     CaseList,
+    Channel,
+    ChannelPart,
     ClientMessage,
     Command,
     Error,
@@ -52,7 +54,20 @@ class TerrainReceived:
     z_b: FloatArray
 
 
-ClientEvent = ServerMessage | TerrainReceived
+@dataclass(frozen=True)
+class ChannelReceived:
+    """A channel, put together from its parts; `decode_channel` unpacks it.
+
+    Attributes:
+        id: id of the `get_channel` command.
+        channel: the packed channel.
+    """
+
+    id: int
+    channel: Channel
+
+
+ClientEvent = ServerMessage | TerrainReceived | ChannelReceived
 
 
 class ClientSession:
@@ -79,6 +94,7 @@ class ClientSession:
         self._hello_sent = False
         self._frame_parts = PartAssembler("frame", MAX_FRAME_BYTES)
         self._terrain_parts = PartAssembler("terrain", MAX_TERRAIN_BYTES)
+        self._channel_parts = PartAssembler("channel", MAX_CHANNEL_BYTES)
 
     def open(self, resume: ResumePoint | None = None) -> bytes:
         """The `hello` to send first.
@@ -125,7 +141,7 @@ class ClientSession:
     def receive(self, data: bytes) -> list[ClientEvent]:
         """What one message of the service means: no event for a part, else one.
 
-        Frames come whole as `Frame`, terrain as `TerrainReceived`.
+        Frames come whole as `Frame`, terrain as `TerrainReceived`, channels as `ChannelReceived`.
 
         Raises:
             ProtocolError: when the service breaks the protocol; close the connection with its close_code.
@@ -142,6 +158,9 @@ class ClientSession:
             return self._add_frame_part(message)
         if isinstance(message, Terrain):
             return self._add_terrain_part(message)
+        if isinstance(message, ChannelPart):
+            whole = self._channel_parts.add(message.id, message.part, message.parts, message.data)
+            return [] if whole is None else [ChannelReceived(message.id, unpack_channel(whole))]
         return [message]
 
     def close(self) -> dict[int, str]:

@@ -17,13 +17,14 @@ from protocol.limits import (
     INBOUND_MAX_BYTES,
     INBOUND_MAX_ITEMS,
     MAX_ARRAY_LENGTH,
+    MAX_CHANNEL_BYTES,
     MAX_FRAME_BYTES,
     MAX_MAP_LENGTH,
     MAX_STRING_BYTES,
     OUTBOUND_MAX_BYTES,
     OUTBOUND_MAX_ITEMS,
 )
-from protocol.messages import ClientMessage, Frame, Message, ServerMessage
+from protocol.messages import Channel, ClientMessage, Frame, Message, ServerMessage
 from protocol.structure import check_structure
 
 
@@ -35,6 +36,7 @@ def operation(message: Message | type[Message]) -> str:
 CLIENT_TYPES: dict[str, type[Message]] = {operation(kind): kind for kind in get_args(ClientMessage)}
 SERVER_TYPES: dict[str, type[Message]] = {operation(kind): kind for kind in get_args(ServerMessage)}
 FRAME_TYPES: dict[str, type[Message]] = {operation(Frame): Frame}
+CHANNEL_TYPES: dict[str, type[Message]] = {operation(Channel): Channel}
 
 
 def pack(message: Message) -> bytes:
@@ -66,6 +68,12 @@ def unpack_frame(data: bytes) -> Frame:
     """A packed frame, from a store or put together from parts; raises as `unpack_client` does."""
     frame: Frame = _unpack(data, FRAME_TYPES, MAX_FRAME_BYTES, INBOUND_MAX_ITEMS)
     return frame
+
+
+def unpack_channel(data: bytes) -> Channel:
+    """A packed channel, from a store or put together from parts; raises as `unpack_client` does."""
+    channel: Channel = _unpack(data, CHANNEL_TYPES, MAX_CHANNEL_BYTES, INBOUND_MAX_ITEMS)
+    return channel
 
 
 def _unpack(data: bytes, types: dict[str, type[Message]], max_bytes: int, max_items: int) -> Any:

@@ -10,7 +10,7 @@ OUTBOUND_MAX_BYTES = 2 << 20
 """Largest message a client accepts."""
 
 PART_BYTES = 256 << 10
-"""Largest data field of one `frame_part` or `terrain`, so that control messages never wait long."""
+"""Largest data field of one part of something large, so that control messages never wait long."""
 
 MAX_CELLS = 1 << 26
 """Largest number of cells of a grid."""
@@ -30,8 +30,11 @@ MAX_STATE_BYTES = 1 << 15
 MAX_BED_CELLS = 1 << 16
 """Most cells whose bed a frame tells: what breaches have lowered."""
 
-MAX_PARTS = MAX_TERRAIN_BYTES // PART_BYTES + 1
-"""Largest number of parts of one frame or terrain."""
+MAX_CHANNEL_BYTES = 8 * MAX_CELLS + (1 << 20)
+"""Largest channel of one frame, packed or unpacked."""
+
+MAX_PARTS = MAX_CHANNEL_BYTES // PART_BYTES + 1
+"""Largest number of parts of one frame, terrain or channel."""
 
 MAX_DEPTH = 8
 """Deepest nesting of arrays and maps in a message."""

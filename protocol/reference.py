@@ -24,6 +24,7 @@ from protocol.edits.model import EditArea, EditLine
 from protocol.forcing import ForcingChange, ForcingItem, ForcingSeries
 from protocol.messages import (
     CaseSummary,
+    Channel,
     ClientMessage,
     GridInfo,
     LineageEntry,
@@ -42,6 +43,7 @@ RECORDS: tuple[type[WireStruct], ...] = (
     RunInfo,
     GridInfo,
     LineageEntry,
+    Channel,
     EditLine,
     EditArea,
     ForcingItem,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from protocol.fields import Command, Message, WireStruct
 from protocol.messages.cases import CaseList, CaseSummary, ListCases
+from protocol.messages.channels import Channel, ChannelName, ChannelPart, GetChannel
 from protocol.messages.control import (
     ControlChanged,
     ControlRequested,
@@ -55,6 +56,7 @@ ClientMessage = (
     | ResumeRun
     | StopRun
     | GetTerrain
+    | GetChannel
     | Subscribe
     | Unsubscribe
     | Seek
@@ -84,6 +86,7 @@ ServerMessage = (
     | RunChanged
     | RunBranched
     | Terrain
+    | ChannelPart
     | EditsChanged
     | ForcingChanged
     | Frame
@@ -103,6 +106,9 @@ __all__ = [
     "CaseList",
     "CaseSummary",
     "ChangeForcing",
+    "Channel",
+    "ChannelName",
+    "ChannelPart",
     "ClientMessage",
     "Command",
     "ControlChanged",
@@ -115,6 +121,7 @@ __all__ = [
     "ForcingChanged",
     "Frame",
     "FramePart",
+    "GetChannel",
     "GetTerrain",
     "GridInfo",
     "Hello",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, get_args
 
 from msgspec import Meta
 
@@ -25,9 +25,11 @@ from protocol.fields import (
 from protocol.forcing import ForcingChange
 from protocol.grid import GridGeometry
 from protocol.limits import MAX_CELLS, MAX_FORCING_CHANGES
+from protocol.messages.channels import ChannelName
 
 Forcing = Annotated[tuple[ForcingChange, ...], Meta(max_length=MAX_FORCING_CHANGES)]
 RunStatus = Literal["starting", "running", "paused", "finished", "stopped", "failed"]
+Channels = Annotated[tuple[ChannelName, ...], Meta(max_length=len(get_args(ChannelName)))]
 
 
 class ListRuns(Command, frozen=True):
@@ -44,9 +46,10 @@ class StartRun(Command, frozen=True):
         device: "auto", "cpu" or "cuda:N".
         paused: whether to stop after the frame at time 0.
         forcing: how its forcing differs from the case, from time 0 on.
+        channels: what to keep beside the depth; none for what the service keeps by itself.
     """
 
-    left_out: ClassVar[tuple[str, ...]] = ("forcing",)
+    left_out: ClassVar[tuple[str, ...]] = ("forcing", "channels")
 
     case: Name
     duration: Positive | None = None
@@ -54,6 +57,7 @@ class StartRun(Command, frozen=True):
     device: Annotated[str, Meta(pattern=r"^(auto|cpu|cuda(:[0-9]{1,3})?)\Z")] = "auto"
     paused: bool = False
     forcing: Forcing = ()
+    channels: Channels | None = None
 
 
 class PauseRun(Command, frozen=True):
@@ -248,9 +252,10 @@ class RunInfo(WireStruct, frozen=True):
         label: the name that people gave it.
         pinned: whether it is kept whatever the budget of the store.
         forcing_revision: revision of its working forcing.
+        channels: what it keeps beside the depth, for `get_channel`.
     """
 
-    left_out: ClassVar[tuple[str, ...]] = ("forcing_revision",)
+    left_out: ClassVar[tuple[str, ...]] = ("forcing_revision", "channels")
 
     run: Identifier
     case: Name
@@ -274,6 +279,7 @@ class RunInfo(WireStruct, frozen=True):
     label: Name = ""
     pinned: bool = False
     forcing_revision: Revision = 0
+    channels: Channels = ()
 
 
 class RunList(Message, frozen=True):

@@ -170,6 +170,31 @@ def test_a_terrain_part_of_another_shape_is_refused(rng: np.random.Generator) ->
         client.receive(p.pack(changed))
 
 
+def test_a_channel_comes_whole_from_its_parts(rng: np.random.Generator) -> None:
+    connection = connect()
+    command = p.GetChannel(connection.client.next_id(), "r", 3, "velocity")
+    connection.ask(command)
+    layout = p.BlockLayout(500, 600)
+    fields = {name: rng.normal(size=(500, 600)).astype(np.float32) for name in ("u", "v")}
+    states = layout.classify(np.ones((500, 600), np.uint16))
+    packed = p.encode_channel(layout, "ancestor", 3, 30.0, "velocity", fields, states)
+    assert len(packed) > p.limits.PART_BYTES
+    connection.tell(p.Ack(command.id))
+    parts = list(p.channel_parts(command.id, packed))
+    (received,) = [event for part in parts for event in connection.tell(part)]
+    assert isinstance(received, p.ChannelReceived)
+    assert received.id == command.id
+    assert p.pack(received.channel) == packed
+    with pytest.raises(p.SequenceError):
+        connection.tell(parts[1])
+
+
+def test_parts_that_hold_no_channel_are_refused() -> None:
+    for data in (p.pack(p.Ack(1)), b"\xc1", b""):
+        with pytest.raises(p.ProtocolError):
+            connect().client.receive(p.pack(p.ChannelPart(1, 0, 1, data)))
+
+
 def test_the_end_tells_which_commands_will_never_be_answered() -> None:
     client = connect().client
     client.send(p.ListRuns(client.next_id()))
