@@ -17,6 +17,7 @@ import warp as wp
 from solver_service.numerics.fields import Fields
 from solver_service.numerics.forcing_kernels import QUANTUM, add_rain, add_source_water, release_water
 from solver_service.numerics.friction import GRAVITY
+from solver_service.numerics.joined_series import SeriesArrays, value_at
 from solver_service.numerics.model import FloodModel
 from solver_service.numerics.step_part import PartVolumes
 
@@ -34,9 +35,15 @@ class _Series:
     """Cells that get the depth handed out."""
 
     def volumes(self) -> npt.NDArray[np.float64]:
-        """Integral of the rates up to each time."""
+        """Integral of the rates from time 0 to each time."""
         mean = self.rates[:-1] if self.is_stepped else 0.5 * (self.rates[1:] + self.rates[:-1])
-        return np.concatenate([[0.0], np.cumsum(mean * np.diff(self.times))])
+        volumes = np.concatenate([[0.0], np.cumsum(mean * np.diff(self.times))])
+        last = int(np.searchsorted(self.times, 0.0, side="right")) - 1
+        if last < 0:
+            return volumes
+        rate = value_at(SeriesArrays(self.times, self.rates), 0.0, self.is_stepped, holds_first=False)
+        earlier = self.rates[last] if self.is_stepped else 0.5 * (self.rates[last] + float(rate))
+        return volumes - (volumes[last] - earlier * self.times[last])
 
 
 class Forcing:

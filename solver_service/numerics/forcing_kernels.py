@@ -1,9 +1,9 @@
 """Water that comes from outside: point and disc discharges, and rain.
 
 A series is linear or stepped between its times, zero before the first and held after the last; V(t) is
-its exact integral. What is due as depth, V / area, is handed out in quanta of 2^-16 m (15 micrometres): any
-float32 depth below 256 m is raised by a quantum without rounding, so that rain on a deep lake is not lost
-and the budget closes. New water brings no momentum.
+its exact integral from time 0 on. What is due as depth, V / area, is handed out in quanta of 2^-16 m (15
+micrometres): any float32 depth below 256 m is raised by a quantum without rounding, so that rain on a deep
+lake is not lost and the budget closes. New water brings no momentum.
 """
 
 import warp as wp
@@ -57,7 +57,8 @@ def release_water(
         if stepped[k] == 1:
             slope = wp.float64(0.0)
         volume = volumes[n] + part * (rates[n] + wp.float64(0.5) * slope * part)
-    quanta = wp.floor(volume / areas[k] * wp.float64(65536.0))
+    # what is due never falls, but its last bit may where one series follows another
+    quanta = wp.max(wp.floor(volume / areas[k] * wp.float64(65536.0)), released[k])
     depths[k] = wp.float32((quanta - released[k]) * wp.float64(0.0000152587890625))
     released[k] = quanta
 

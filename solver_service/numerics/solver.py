@@ -33,7 +33,7 @@ from solver_service.numerics.row_engine import RowEngine, rows_compile
 from solver_service.numerics.section import SectionProfile, SectionSeries, SectionTotals
 from solver_service.numerics.section_recorder import SectionRecorder
 from solver_service.numerics.snapshot import Snapshot
-from solver_service.numerics.state_keeping import check_snapshot, put_back, take_snapshot
+from solver_service.numerics.state_keeping import check_snapshot, put_back, take_snapshot, with_new_rain
 from solver_service.numerics.weirs import Weirs
 from solver_service.numerics.wet_block_kernels import BLOCK_STRIDE, classify_blocks, quantise_depth
 
@@ -381,3 +381,12 @@ class ShallowWaterSolver:
         put_back(self._engine, snapshot)
         self._initial_volume = float(snapshot.scalars["initial_volume"])
         self._edits_volume = float(snapshot.scalars["edits_volume"])
+
+    def adopt(self, snapshot: Snapshot) -> None:
+        """Go on from a state of a model whose forcing differs from then on; rain may be new.
+
+        Raises:
+            ModelError: when the snapshot belongs to another model.
+        """
+        self.restore(with_new_rain(self._engine, snapshot))
+        self._water_changed()

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from solver_service.numerics.engine import Engine
 from solver_service.numerics.fields import MAXIMA_NAMES, STATE_NAMES
+from solver_service.numerics.forcing import Forcing
 from solver_service.numerics.snapshot import Snapshot
 
 
@@ -59,6 +60,17 @@ def check_snapshot(engine: Engine, snapshot: Snapshot) -> None:
     for part in parts.after_step:
         shapes |= {name: array.shape for name, array in part.snapshot().items()}
     snapshot.check(shapes)
+
+
+def with_new_rain(engine: Engine, snapshot: Snapshot) -> Snapshot:
+    """A snapshot of a model that had no rain, as one of the engine's, of which nothing has fallen yet."""
+    arrays = dict(snapshot.arrays)
+    for part in engine.parts.after_step:
+        if isinstance(part, Forcing):
+            handed_out = np.asarray(arrays.get("released", np.zeros(0)), np.float64)
+            rest = np.zeros(max(0, part.series_count - handed_out.size))
+            arrays["released"] = np.concatenate([handed_out, rest])
+    return Snapshot(arrays, snapshot.scalars)
 
 
 def put_back(engine: Engine, snapshot: Snapshot) -> None:

@@ -83,3 +83,13 @@ def test_sources_are_booked_by_name():
     booked = s.budget().sources
     assert list(booked) == ["source-1", "spring", "source-3"]
     assert list(booked.values()) == pytest.approx([20.0, 10.0, 5.0], abs=1e-3)
+
+
+@pytest.mark.parametrize("interpolation", ["linear", "step"])
+def test_what_was_due_before_time_zero_is_not_brought(interpolation):
+    source = Source([10], [10], [-100.0, 100.0], [0.0, 2.0])
+    rain = Rain.uniform([-50.0, 50.0], [1e-4, 1e-4], (30, 30), interpolation)
+    s = solver(basin(sources=(source,), rain=rain), threads=1)
+    s.advance_to(10.0)
+    assert s.budget().inflow == pytest.approx(10.5, abs=3 * CELL * QUANTUM)
+    assert s.budget().rain == pytest.approx(1e-3 * 900 * CELL, rel=2e-2)

@@ -26,3 +26,16 @@ def test_a_snapshot_of_a_model_without_the_part_is_refused_and_changes_nothing()
     with pytest.raises(ModelError, match=r"snapshot.s released has the shape \(1,\)"):
         s.restore(bare.snapshot())
     assert not s.depth().any()
+
+
+def test_a_state_is_adopted_by_a_model_with_rain_that_it_did_not_have():
+    dry = solver(full_model(rain=False), threads=1)
+    dry.set_water(*wild_water(MODEL.z_b))
+    dry.advance_to(2.0)
+    s = solver(MODEL, threads=1)
+    s.adopt(dry.snapshot())
+    before, after = dry.budget(), s.budget()
+    assert (after.rain, after.stored, after.inflow) == (0.0, before.stored, before.inflow)
+    assert differences(dry, s) == []
+    s.advance_to(4.0)
+    assert s.budget().rain > 0.0
