@@ -116,6 +116,8 @@ class RunReports:
 
     def _announce(self, run: Run) -> None:
         self._announced_soon.discard(run.run)
+        if run.run not in self._tree:
+            return  # it was deleted meanwhile
         self._audience.announce(RunChanged(self._tree.info(run)))
 
     def _failed(self, worker: Worker, report: Failed) -> None:

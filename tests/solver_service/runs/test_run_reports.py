@@ -28,3 +28,16 @@ def test_progress_and_the_water_budget_are_told_while_a_run_computes(service: Se
     assert final.stored - explained == pytest.approx(final.error, abs=1e-6 * final.initial)
     assert abs(final.error_relative) < 1e-6
     assert last.volume_error_relative == final.error_relative
+
+
+def test_news_that_were_due_when_a_run_was_deleted_are_dropped(
+    service: Service, caplog: pytest.LogCaptureFixture
+) -> None:
+    registry = service.registry
+    run = service.call(registry.control.start("dam-break", 1e4))
+    service.wait(lambda: run.frame_count > 1)
+    service.call(registry.control.stop(run.run))
+    assert run.run in registry.reports._announced_soon, "news are due"
+    service.call(registry.control.delete(run.run))
+    service.wait(lambda: run.run not in registry.reports._announced_soon)
+    assert "Exception in callback" not in caplog.text
