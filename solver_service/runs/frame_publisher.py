@@ -79,8 +79,8 @@ class FramePublisher:
         self._report = report
         self._trouble = trouble
         self._space = threading.Condition()
-        self._waiting_bytes = 0
-        self._waiting = 0
+        self._handed = self._handed_bytes = 0  # written by the solver's thread alone
+        self._stored = self._stored_bytes = 0  # written by this one's alone
         self._in_trouble = False
         self._queue: queue.Queue[tuple[QuantisedFrame, float, float] | Callable[[], None] | None]
         self._queue = queue.Queue()
@@ -99,10 +99,11 @@ class FramePublisher:
             How long the caller waited [s].
         """
         begun = clock.perf_counter()
-        with self._space:
-            self._space.wait_for(lambda: self._waiting_bytes < QUEUE_BYTES or self._in_trouble)
-            self._waiting_bytes += frame.q.nbytes
-            self._waiting += 1
+        if not self._has_space:  # no lock is asked for otherwise: whoever holds it may not get a processor
+            with self._space:
+                self._space.wait_for(lambda: self._has_space or self._in_trouble)
+        self._handed_bytes += frame.q.nbytes
+        self._handed += 1
         waited = clock.perf_counter() - begun
         self._queue.put((frame, begun, waited))
         return waited
@@ -110,8 +111,8 @@ class FramePublisher:
     def settle(self) -> bool:
         """Wait until everything handed over is stored; False when a frame cannot be stored for now."""
         with self._space:
-            self._space.wait_for(lambda: not self._waiting or self._in_trouble)
-            return not self._waiting
+            self._space.wait_for(lambda: self._stored == self._handed or self._in_trouble)
+            return self._stored == self._handed
 
     def then(self, call: Callable[[], None]) -> None:
         """Have something called once everything handed over so far is stored."""
@@ -130,6 +131,10 @@ class FramePublisher:
         self._queue.put(None)
         self._thread.join()
 
+    @property
+    def _has_space(self) -> bool:
+        return self._handed_bytes - self._stored_bytes < QUEUE_BYTES
+
     def _work(self) -> None:
         database = RunDatabase(self._folder.database, self._epoch)
         while (job := self._queue.get()) is not None:
@@ -138,8 +143,8 @@ class FramePublisher:
                 continue
             self._store(*job, database)
             with self._space:
-                self._waiting_bytes -= job[0].q.nbytes
-                self._waiting -= 1
+                self._stored_bytes += job[0].q.nbytes
+                self._stored += 1
                 self._space.notify_all()
         if self._writer is not None:
             self._writer.close()
