@@ -30,9 +30,13 @@ from solver_service.web.token_watch import watch_tokens
 BACKLOG = 128
 GOING_AWAY = 1001
 GRACEFUL_SHUTDOWN_S = 2
-PING_INTERVAL_S = 20.0
+PING_INTERVAL_S = 10.0
+PING_TIMEOUT_S = 15.0
+"""A peer that does not answer a ping for so long is dropped: at most 25 s after it has died."""
 UNACKNOWLEDGED_MS = 15_000
 """A peer that takes nothing for so long is dropped by the system; pings do not find it while a send waits."""
+UNSENT_BYTES = 65_536
+"""What the system may hold back for a peer; more would keep pings and answers from it on a slow link."""
 
 
 def run_service(settings: ServiceSettings) -> None:
@@ -100,7 +104,7 @@ class _Server(uvicorn.Server):
                 ws_max_size=limits.INBOUND_MAX_BYTES,
                 ws_per_message_deflate=False,
                 ws_ping_interval=PING_INTERVAL_S,
-                ws_ping_timeout=PING_INTERVAL_S,
+                ws_ping_timeout=PING_TIMEOUT_S,
                 timeout_graceful_shutdown=GRACEFUL_SHUTDOWN_S,
                 lifespan="off",
                 access_log=False,
@@ -162,6 +166,8 @@ def _listen(host: str, port: int) -> socket.socket:
         ) from error
     if hasattr(socket, "TCP_USER_TIMEOUT"):
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNACKNOWLEDGED_MS)
+    if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT_BYTES)
     return listener
 
 
