@@ -18,13 +18,13 @@ from typing import Annotated
 import typer
 
 from viewer.app.display import has_display
+from viewer.app.endpoint import Endpoint, read_token, stream_url
 from viewer.errors import ViewerError
 
 __all__ = ["main"]
 
 EXIT_REFUSED = 2
 DEMO_CASE = "jacksboro"
-WS_SCHEMES = ("ws://", "wss://")
 
 application = typer.Typer(
     add_completion=False,
@@ -106,10 +106,10 @@ def _run(
     started = time.monotonic()
     try:
         _check(url, is_local, headless, script)
-        from viewer.app.program import Endpoint, ViewerJob, fly_headless, open_window
+        from viewer.app.program import ViewerJob, fly_headless, open_window
         from viewer.commands import StartRun
 
-        endpoint = Endpoint(url, _read_token(token_file), data_dir)
+        endpoint = Endpoint(url, read_token(token_file), data_dir)
         start = None if case is None else StartRun(case, duration, output_interval, device)
         job = ViewerJob(endpoint, start, started)
         if headless is None:
@@ -129,21 +129,9 @@ def _run(
 def _check(url: str | None, is_local: bool, headless: Path | None, script: Path | None) -> None:
     if is_local == (url is not None):
         raise ViewerError("give either the address of a service (ws://HOST:PORT) or --local CASE")
-    if url is not None and not url.startswith(WS_SCHEMES):
-        raise ViewerError(f"the address {url!r} is not allowed; it must begin with ws:// or wss://")
+    if url is not None:
+        stream_url(url)
     if script is not None and headless is None:
         raise ViewerError("--script needs --headless DIR")
     if headless is not None and headless.exists() and not headless.is_dir():
         raise ViewerError(f"--headless {headless} is a file; a folder is needed")
-
-
-def _read_token(path: Path | None) -> str | None:
-    if path is None:
-        return None
-    try:
-        token = path.read_text(encoding="utf-8").strip()
-    except (OSError, UnicodeDecodeError) as error:
-        raise ViewerError(f"the token file {path} cannot be read: {error}") from None
-    if not token:
-        raise ViewerError(f"the token file {path} is empty")
-    return token

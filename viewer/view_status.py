@@ -134,6 +134,11 @@ class ViewStatus:
 
     Attributes:
         connection: one sentence about the connection.
+        address: websocket address of the service.
+        server: name and version of the service, empty before it said them.
+        session: the name the service gave this connection.
+        received_bytes: bytes that came in since the viewer started.
+        received_bit_s: bits a second that come in now.
         message: the newest notice, error or result, one sentence.
         time: playback time [s].
         clock: clock time of the playback time in words, empty where the case has no clock.
@@ -153,6 +158,11 @@ class ViewStatus:
 
     connection: str = "not connected"
     is_connected: bool = False
+    address: str = ""
+    server: str = ""
+    session: str = ""
+    received_bytes: int = 0
+    received_bit_s: float = 0.0
     message: str = ""
     devices: tuple[str, ...] = ()
     cases: tuple[CaseRow, ...] = ()

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from viewer.app.endpoint import Endpoint, stream_url
 from viewer.app.headless import HeadlessSession
 from viewer.app.local_service import LocalService, LocalServiceError
 from viewer.app.script import read_script
@@ -18,24 +19,7 @@ from viewer.commands import StartRun
 from viewer.errors import ConnectionLost
 from viewer.net import ConnectionThread, FrameLoader
 
-__all__ = ["Endpoint", "ViewerJob", "fly_headless", "open_window"]
-
-STREAM_PATH = "/v1/stream"
-
-
-@dataclass(frozen=True)
-class Endpoint:
-    """Where the service is.
-
-    Attributes:
-        url: websocket address; None starts a service on this machine.
-        token: bearer token of the service at `url`.
-        data_dir: where a service on this machine keeps its store; None: its own default.
-    """
-
-    url: str | None = None
-    token: str | None = None
-    data_dir: Path | None = None
+__all__ = ["ViewerJob", "fly_headless", "open_window"]
 
 
 @dataclass(frozen=True)
@@ -110,7 +94,7 @@ def _program(job: ViewerJob) -> Iterator[tuple[ViewerApp, LocalService | None]]:
         endpoint = Endpoint(service.url, service.token)
     try:
         assert endpoint.url is not None
-        connection = ConnectionThread(_stream_url(endpoint.url), endpoint.token)
+        connection = ConnectionThread(stream_url(endpoint.url), endpoint.token)
         app = ViewerApp(connection, FrameLoader(), job.start)
         connection.start()
         try:
@@ -120,9 +104,3 @@ def _program(job: ViewerJob) -> Iterator[tuple[ViewerApp, LocalService | None]]:
     finally:
         if service is not None:
             service.close()
-
-
-def _stream_url(url: str) -> str:
-    """Return `url` with the path of the stream when it has none."""
-    rest = url.partition("://")[2]
-    return url if "/" in rest.rstrip("/") else url.rstrip("/") + STREAM_PATH

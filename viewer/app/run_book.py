@@ -22,6 +22,10 @@ class RunBook:
     """
 
     def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        """Forget everything: another service has other runs."""
         self.cases: tuple[protocol.CaseSummary, ...] = ()
         self.runs: dict[str, protocol.RunInfo] = {}
         self.progress: dict[str, protocol.Progress] = {}

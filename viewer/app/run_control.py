@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import time as wall_clock
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import protocol
 from viewer.app.editing import Editing
+from viewer.app.endpoint import read_token, stream_url
 from viewer.app.recalculation import Recalculation
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
 from viewer.commands import (
     Command,
     CommandError,
+    ConnectTo,
     PauseRun,
     Recalculate,
+    Reconnect,
     ResumeRun,
     SelectRun,
     StartRun,
@@ -78,6 +82,10 @@ class RunControl:
             CommandError: it makes no sense now.
         """
         match command:
+            case ConnectTo(url, token_file):
+                self._connect_to(url, token_file)
+            case Reconnect():
+                self.desk.connection.retry()
             case StartRun():
                 self.start_run(command)
             case SelectRun(run):
@@ -262,6 +270,16 @@ class RunControl:
             and self._clock.time >= shown.branch_index * shown.info.output_interval
             and shown.branch_index not in shown.timeline
         )
+
+    def _connect_to(self, url: str, token_file: str | None) -> None:
+        address = stream_url(url)
+        token = read_token(None if token_file is None else Path(token_file))
+        self.desk.change_service(address, token)
+        self.editing.reset()
+        self.shown = self.recalculated = self._awaited_run = self._autostart = None
+        self._recalculate_wanted = False
+        self._clock.seek(0.0)
+        self.say(f"connecting to {address}")
 
     # --- within ---------------------------------------------------------------------------------------
 

@@ -47,6 +47,12 @@ class ServiceDesk:
     Args:
         connection: the connection to the service.
         listener: who is told.
+
+    Attributes:
+        book: what is known of its cases and runs.
+        devices: devices that a run may ask for.
+        server: name and version of the service; empty before it said them.
+        session: the name the service gave this connection.
     """
 
     def __init__(self, connection: ConnectionThread, listener: ServiceListener) -> None:
@@ -56,6 +62,9 @@ class ServiceDesk:
         self._listener = listener
         self._link = ServiceLink(connection, listener.say)
         self._heard_at: float | None = None
+        self._awaits_welcome = False
+        self.server = ""
+        self.session = ""
 
     @property
     def is_open(self) -> bool:
@@ -70,6 +79,16 @@ class ServiceDesk:
         """Seconds since the connection last stood, at `time.monotonic()` = `now`; None before it ever did."""
         return None if self._heard_at is None else max(0.0, now - self._heard_at)
 
+    def change_service(self, url: str, token: str | None) -> None:
+        """Leave the service for another one; all that is known of this one's runs is forgotten."""
+        self._awaits_welcome = True
+        self._link.forget()
+        self.book.clear()
+        self.devices = ()
+        self.server = self.session = ""
+        self._heard_at = None
+        self.connection.change_service(url, token)
+
     def drain(self) -> list[protocol.Frame]:
         """Act on every waiting control message; return the frames that came, and let as many more come."""
         if self.is_open:
@@ -78,7 +97,11 @@ class ServiceDesk:
         frames = self.connection.mailbox.take_frames()
         for message in self.connection.mailbox.take_control():
             self._listener.is_stale = True
+            if self._awaits_welcome and not isinstance(message, protocol.Welcome):
+                continue  # said by the service that was left
             self._handle(message)
+        if self._awaits_welcome:
+            return []
         if frames:
             self._link.grant(len(frames))
         return frames
@@ -161,6 +184,8 @@ class ServiceDesk:
     def _handle(self, message: protocol.ClientEvent) -> None:
         match message:
             case protocol.Welcome():
+                self._awaits_welcome = False
+                self.server, self.session = f"{message.server} {message.version}", message.session
                 self._link.forget()
                 self.devices = tuple(message.devices)
                 self._link.send(lambda number: protocol.ListCases(number), "list the cases")

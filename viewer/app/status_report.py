@@ -23,6 +23,9 @@ def program_status(desk: ServiceDesk, clock: PlaybackClock, drawing: EditDrawing
     return ViewStatus(
         connection=desk.connection_sentence(),
         is_connected=desk.is_open,
+        address=desk.connection.url,
+        server=desk.server,
+        session=desk.session,
         message=message,
         devices=desk.devices,
         cases=desk.book.case_rows(),

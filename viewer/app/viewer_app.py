@@ -24,6 +24,7 @@ from viewer.app.run_control import RunControl
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
 from viewer.app.status_report import program_status, run_status
+from viewer.app.traffic import Traffic
 from viewer.app.view_options import changed_options
 from viewer.app.water_feed import WaterFeed
 from viewer.app.water_view import WaterView
@@ -109,6 +110,7 @@ class ViewerApp:
         self._status_made = -math.inf
         self._status = ViewStatus()
         self._map_maker = MapMaker()
+        self._traffic = Traffic()
         self._levee_watch = LeveeWatch()
         self.water = WaterView()
         self.comparison = Comparison(self.desk, loader, self.feed, self.control.resubscribe)
@@ -153,7 +155,7 @@ class ViewerApp:
         self._picture_stale |= not isinstance(command, WITHOUT_PICTURE)
         if (
             self.playback.carry_out(command)
-            or self.control.carry_out(command)
+            or self._steer(command)
             or self.control.editing.carry_out(command, self.shown)
         ):
             return
@@ -175,6 +177,14 @@ class ViewerApp:
             case _:
                 if self.camera_work is None or not self.camera_work.carry_out(command):
                     raise CommandError(f"{type(command).__name__} is not possible before a terrain is shown")
+
+    def _steer(self, command: Command) -> bool:
+        is_done = self.control.carry_out(command)
+        if self.shown is None and self.camera_work is not None:  # another service
+            self.comparison.end()
+            self.camera_work = None
+            self.feed.forget()
+        return is_done
 
     # --- time ---------------------------------------------------------------------------------------
 
@@ -335,7 +345,14 @@ class ViewerApp:
 
     def _make_status(self) -> ViewStatus:
         status = program_status(self.desk, self.clock, self.control.editing.drawing, self.message)
-        status = dataclasses.replace(status, units=self.options.units, data_age=self._data_age())
+        received = self.desk.connection.received_bytes
+        status = dataclasses.replace(
+            status,
+            units=self.options.units,
+            data_age=self._data_age(),
+            received_bytes=received,
+            received_bit_s=self._traffic.note(received, wall_clock.monotonic()),
+        )
         if self.shown is None:
             return status
         status = run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch)

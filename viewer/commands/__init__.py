@@ -42,8 +42,10 @@ from viewer.commands.playback import (
 )
 from viewer.commands.runs import (
     CompareWith,
+    ConnectTo,
     PauseRun,
     Recalculate,
+    Reconnect,
     ResumeRun,
     SelectRun,
     StartRun,
@@ -58,6 +60,7 @@ __all__ = [
     "Command",
     "CommandError",
     "CompareWith",
+    "ConnectTo",
     "DragOrbit",
     "DragPan",
     "FinishEdit",
@@ -71,6 +74,7 @@ __all__ = [
     "Play",
     "ProbeAt",
     "Recalculate",
+    "Reconnect",
     "Redo",
     "ReleaseMoves",
     "ResetView",

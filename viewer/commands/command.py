@@ -38,8 +38,10 @@ from viewer.commands.playback import (
 )
 from viewer.commands.runs import (
     CompareWith,
+    ConnectTo,
     PauseRun,
     Recalculate,
+    Reconnect,
     ResumeRun,
     SelectRun,
     StartRun,
@@ -61,6 +63,8 @@ Command = (
     | Seek
     | SetSpeed
     | FollowLive
+    | ConnectTo
+    | Reconnect
     | StartRun
     | SelectRun
     | CompareWith

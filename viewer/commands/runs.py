@@ -1,10 +1,38 @@
-"""Runs: starting, choosing, pausing, comparing, recalculating."""
+"""Services and runs: connecting, starting, choosing, pausing, comparing, recalculating."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["CompareWith", "PauseRun", "Recalculate", "ResumeRun", "SelectRun", "StartRun", "StopRun"]
+__all__ = [
+    "CompareWith",
+    "ConnectTo",
+    "PauseRun",
+    "Recalculate",
+    "Reconnect",
+    "ResumeRun",
+    "SelectRun",
+    "StartRun",
+    "StopRun",
+]
+
+
+@dataclass(frozen=True)
+class ConnectTo:
+    """Leave the service and look at another one.
+
+    Attributes:
+        url: its address, ws://HOST:PORT.
+        token_file: file with the token for it, None when it asks for none.
+    """
+
+    url: str
+    token_file: str | None = None
+
+
+@dataclass(frozen=True)
+class Reconnect:
+    """Try to connect now rather than when the countdown ends."""
 
 
 @dataclass(frozen=True)

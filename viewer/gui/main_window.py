@@ -33,6 +33,7 @@ from viewer.commands import (
     TogglePlay,
 )
 from viewer.gui.conductor import Conductor, Painter
+from viewer.gui.connection_panel import ConnectionPanel
 from viewer.gui.depth_plot import DepthPlot
 from viewer.gui.edit_panel import EditPanel
 from viewer.gui.kept_settings import KeptSettings
@@ -88,6 +89,7 @@ class MainWindow(QMainWindow):
         self.run_panel = RunPanel(self._dispatch)
         self.depth_plot = DepthPlot()
         self.water_panel = WaterPanel(self._dispatch)
+        self.connection_panel = ConnectionPanel(self._dispatch)
         self.status_line = StatusLine()
         self.setStatusBar(self.status_line)
         middle = QWidget()
@@ -102,7 +104,9 @@ class MainWindow(QMainWindow):
             self._dock("Terrain edits", self.edit_panel, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Depth at a point", self.depth_plot, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Water", self.water_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
+            self._dock("Connection", self.connection_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
         ]
+        self.docks[-1].hide()
         self.resizeDocks(self.docks[:3], [DOCK_WIDTH] * 3, Qt.Orientation.Horizontal)
         self.resizeDocks(self.docks[:3], [310, 330, 240], Qt.Orientation.Vertical)
         self.view_menu = ViewMenu(self._dispatch, self._keep_view, self)
@@ -131,6 +135,7 @@ class MainWindow(QMainWindow):
             self.run_panel.show_status(status)
             self.depth_plot.show_status(status)
             self.water_panel.show_status(status)
+            self.connection_panel.show_status(status)
             self.setWindowTitle(f"{status.title or 'no run'} - Flood Emergency Visualizer")
             self.scene.setCursor(
                 Qt.CursorShape.CrossCursor if status.is_drawing else Qt.CursorShape.ArrowCursor
@@ -216,6 +221,7 @@ class MainWindow(QMainWindow):
 
     def _make_menus(self) -> None:
         file_menu = self.menuBar().addMenu("&File")
+        self._action(file_menu, "Connect to ...", "Ctrl+O", self.connection_panel.ask)
         self._action(file_menu, "Save picture ...", "Ctrl+S", self._save_picture)
         self._action(file_menu, "Export picture ...", "Ctrl+Shift+S", self._export_picture)
         self._action(file_menu, "Quit", "Ctrl+Q", self.close)

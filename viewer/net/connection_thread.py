@@ -81,6 +81,7 @@ class ConnectionThread:
         mailbox: what came in: control messages (a `Welcome` opens each new connection) and packed frames.
         state: what the connection is doing now; to be polled.
         resume_point: what the viewer has already; sent in the hello after a loss.
+        received_bytes: bytes of all messages that came in.
     """
 
     def __init__(
@@ -92,11 +93,11 @@ class ConnectionThread:
         back_off: BackOff | None = None,
         woken: Callable[[], None] | None = None,
     ) -> None:
-        self.url = url
+        self._service = _Service(url, token)
+        self.received_bytes = 0
         self.mailbox: Mailbox[protocol.ClientEvent, protocol.Frame] = Mailbox()
         self.resume_point: protocol.ResumePoint | None = None
         self._lost_session: str | None = None
-        self._token = token
         self._client = client
         self._back_off = back_off if back_off is not None else BackOff()
         self._woken = woken
@@ -106,12 +107,43 @@ class ConnectionThread:
         self._session: protocol.ClientSession | None = None
         self._socket: ClientConnection | None = None
         self._stop = threading.Event()
+        self._nudge = threading.Event()
         self._thread = threading.Thread(target=self._run, name="fev-connection", daemon=True)
         self.state = ConnectionState("connecting", f"connecting to {url}")
+
+    @property
+    def url(self) -> str:
+        """Websocket address of the service."""
+        return self._service.url
 
     def start(self) -> None:
         """Begin to connect."""
         self._thread.start()
+
+    def retry(self) -> None:
+        """Try to connect now rather than after the waiting time; also after a refusal."""
+        self._back_off.reset()
+        self._nudge.set()
+
+    def change_service(self, url: str, token: str | None) -> None:
+        """Leave the service and connect to another one; nothing of the old one comes any more.
+
+        Args:
+            url: websocket address of the other one.
+            token: its bearer token, None when it asks for none.
+        """
+        with self._lock:
+            self._service = _Service(url, token)
+            self._session = None  # what is still to leave was meant for the old one
+            self.resume_point = None
+            self._lost_session = None
+            self.state = ConnectionState("connecting", f"connecting to {url}")
+            socket = self._socket
+        if socket is not None:
+            socket.close()
+        self.mailbox.take_control()
+        self.mailbox.take_frames()
+        self.retry()
 
     def next_id(self) -> int:
         """Return a command id that was not used on this connection object before."""
@@ -138,6 +170,7 @@ class ConnectionThread:
     def close(self) -> None:
         """End the connection and its threads. May be called twice."""
         self._stop.set()
+        self._nudge.set()
         socket = self._socket
         if socket is not None:
             socket.close()
@@ -150,13 +183,21 @@ class ConnectionThread:
                 reason = self._connect_and_read()
             except _Refused as refusal:
                 self._tell(ConnectionState("refused", str(refusal)))
-                return
+                self._wait(None)
+                continue
             if self._stop.is_set():
                 break
             delay = self._back_off.next_delay()
-            self._tell(ConnectionState("waiting", reason, self._back_off.attempt, time.monotonic() + delay))
-            self._stop.wait(delay)
+            if not self._nudge.is_set():
+                until = time.monotonic() + delay
+                self._tell(ConnectionState("waiting", reason, self._back_off.attempt, until))
+            self._wait(delay)
         self._tell(ConnectionState("closed", "connection closed"))
+
+    def _wait(self, seconds: float | None) -> None:
+        """Wait until the next attempt is due or asked for; None waits for that alone."""
+        self._nudge.wait(seconds)
+        self._nudge.clear()
 
     def _connect_and_read(self) -> str:
         """Hold one connection from opening to its end; return why it ended.
@@ -164,17 +205,21 @@ class ConnectionThread:
         Raises:
             _Refused: the service will not have us, and trying again would not help.
         """
-        self._tell(ConnectionState("connecting", f"connecting to {self.url}", self._back_off.attempt))
+        service = self._service
+        self._tell(ConnectionState("connecting", f"connecting to {service.url}", self._back_off.attempt))
         with contextlib.ExitStack() as stack:
             try:
-                socket = self._open_socket(stack)
+                socket = self._open_socket(stack, service)
             except (OSError, TimeoutError) as error:
-                return f"no connection to {self.url}: {_cause(error)}"
-            return self._converse(socket)
+                return f"no connection to {service.url}: {_cause(error)}"
+            return self._converse(socket, service)
 
-    def _converse(self, socket: ClientConnection) -> str:
-        self._socket = socket
-        session = protocol.ClientSession(self._client, self._token)
+    def _converse(self, socket: ClientConnection, service: _Service) -> str:
+        with self._lock:
+            self._socket = socket
+            if self._service is not service:
+                return f"left {service.url}"
+        session = protocol.ClientSession(self._client, service.token)
         self._outgoing = queue.Queue(OUTGOING_LIMIT)
         writer = threading.Thread(
             target=self._write, args=(socket, self._outgoing), name="fev-connection-writer", daemon=True
@@ -184,9 +229,9 @@ class ConnectionThread:
             with self._lock:
                 self._session = session
                 self._outgoing.put(session.open(self._resume()))
-            return self._read(socket, session)
+            return self._read(socket, session, service)
         finally:
-            if session.welcome is not None:
+            if session.welcome is not None and self._service is service:
                 self._lost_session = session.welcome.session
             with self._lock:
                 self._session = None
@@ -202,13 +247,14 @@ class ConnectionThread:
             return None
         return protocol.ResumePoint(point.run, point.last_index, point.revision, self._lost_session)
 
-    def _open_socket(self, stack: contextlib.ExitStack) -> ClientConnection:
-        headers = {} if self._token is None else {"Authorization": f"Bearer {self._token}"}
+    def _open_socket(self, stack: contextlib.ExitStack, service: _Service) -> ClientConnection:
+        url = service.url
+        headers = {} if service.token is None else {"Authorization": f"Bearer {service.token}"}
         try:
-            host = urllib.parse.urlsplit(self.url).hostname or ""
+            host = urllib.parse.urlsplit(url).hostname or ""
             socket = stack.enter_context(
                 connect(
-                    self.url,
+                    url,
                     additional_headers=headers,
                     subprotocols=[Subprotocol(protocol.PROTOCOL_VERSION)],
                     compression=None,
@@ -221,28 +267,30 @@ class ConnectionThread:
             )
         except (InvalidURI, ValueError) as error:
             raise _Refused(
-                f"{self.url!r} is not a websocket address (ws://HOST:PORT/v1/stream): {error}"
+                f"{url!r} is not a websocket address (ws://HOST:PORT/v1/stream): {error}"
             ) from None
         except InvalidStatus as error:
             status = error.response.status_code
             if status in (401, 403):
-                raise _Refused(f"{self.url} refused the token (HTTP {status})") from None
+                raise _Refused(f"{url} refused the token (HTTP {status})") from None
             if status in REFUSED_STATUS:
-                raise _Refused(
-                    f"{self.url} is not a solver service that speaks fev.v1 (HTTP {status})"
-                ) from None
+                raise _Refused(f"{url} is not a solver service that speaks fev.v1 (HTTP {status})") from None
             raise OSError(f"HTTP status {status}") from None
         except InvalidHandshake as error:
-            raise _Refused(f"{self.url} is not a solver service that speaks fev.v1: {error}") from None
+            raise _Refused(f"{url} is not a solver service that speaks fev.v1: {error}") from None
         if socket.subprotocol != protocol.PROTOCOL_VERSION:
-            raise _Refused(f"{self.url} does not speak {protocol.PROTOCOL_VERSION}")
+            raise _Refused(f"{url} does not speak {protocol.PROTOCOL_VERSION}")
         return socket
 
-    def _read(self, socket: ClientConnection, session: protocol.ClientSession) -> str:
+    def _read(self, socket: ClientConnection, session: protocol.ClientSession, service: _Service) -> str:
+        url = service.url
         try:
             for data in socket:
+                if self._service is not service:
+                    return f"left {url}"
+                self.received_bytes += len(data)
                 if isinstance(data, str):
-                    return f"{self.url} sent text where fev.v1 has bytes"
+                    return f"{url} sent text where fev.v1 has bytes"
                 with self._lock:
                     messages = session.receive(data)
                 for message in messages:
@@ -252,13 +300,13 @@ class ConnectionThread:
         except ConnectionClosed:
             pass  # told by the close code below
         except protocol.ProtocolError as error:
-            return f"{self.url} sent something that is not fev.v1: {error}"
+            return f"{url} sent something that is not fev.v1: {error}"
         except MailboxFull as error:
             return f"the connection was cut: {error}"
         code, reason = socket.close_code, socket.close_reason
         if code in REFUSED_CLOSE_CODES:
-            raise _Refused(f"{self.url} closed the connection: {reason or f'code {code}'}")
-        return f"connection to {self.url} lost" + (f": {reason}" if reason else "")
+            raise _Refused(f"{url} closed the connection: {reason or f'code {code}'}")
+        return f"connection to {url} lost" + (f": {reason}" if reason else "")
 
     def _deliver(self, message: protocol.ClientEvent) -> None:
         if isinstance(message, protocol.Frame):
@@ -282,6 +330,14 @@ class ConnectionThread:
                 socket.send(packed)
             except ConnectionClosed:
                 return  # the reader tells why
+
+
+@dataclass(frozen=True, repr=False)
+class _Service:
+    """Where the service is: its address, and its bearer token or None."""
+
+    url: str
+    token: str | None
 
 
 class _Refused(Exception):

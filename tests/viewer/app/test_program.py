@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from tests.viewer.tiny_service import TOKEN, TinyService
-from viewer.app.program import Endpoint, ViewerJob, fly_headless
+from viewer.app.endpoint import Endpoint
+from viewer.app.program import ViewerJob, fly_headless
 from viewer.commands import StartRun
 from viewer.errors import ViewerError
 

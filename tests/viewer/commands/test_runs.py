@@ -3,8 +3,10 @@ import pytest
 from viewer.commands import (
     Command,
     CompareWith,
+    ConnectTo,
     PauseRun,
     Recalculate,
+    Reconnect,
     ResumeRun,
     SelectRun,
     StartRun,
@@ -27,3 +29,10 @@ from viewer.commands import (
 )
 def test_a_script_can_steer_runs(entry: dict[str, object], command: Command) -> None:
     assert command_from_mapping(entry) == command
+
+
+def test_a_script_can_change_the_service() -> None:
+    entry = {"command": "ConnectTo", "url": "ws://there", "token_file": "token.txt"}
+
+    assert command_from_mapping(entry) == ConnectTo("ws://there", "token.txt")
+    assert command_from_mapping({"command": "Reconnect"}) == Reconnect()

@@ -162,3 +162,53 @@ def test_closing_twice_leaves_no_thread(service: TinyService, connection: Connec
 
     assert connection.state.phase == "closed"
     assert service.computed == FRAMES
+
+
+def test_a_refused_connection_is_tried_again_when_asked(service: TinyService) -> None:
+    connection = ConnectionThread(service.url, "wrong", back_off=BackOff(first_s=0.01))
+    connection.start()
+    wait_for(lambda: connection.state.phase == "refused")
+    connection.retry()
+    wait_for(lambda: len(service.authorizations) == 2)
+    connection.close()
+
+
+def test_the_countdown_is_cut_short_when_asked() -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    connection = ConnectionThread(f"ws://127.0.0.1:{port}/v1/stream", None, back_off=BackOff(60.0, 60.0))
+    connection.start()
+    wait_for(lambda: connection.state.phase == "waiting")
+    first = connection.state.retry_at
+    connection.retry()
+    wait_for(lambda: connection.state.phase == "waiting" and connection.state.retry_at != first)
+
+    assert connection.state.attempt == 1  # counted anew
+    connection.close()
+
+
+def test_another_service_takes_the_place_of_the_first(
+    service: TinyService, connection: ConnectionThread
+) -> None:
+    other = TinyService()
+    opened(connection)
+    connection.resume_point = protocol.ResumePoint("a-run", 3, 1)
+    connection.change_service(other.url, TOKEN)
+    wait_for(lambda: connection.state.phase == "open" and bool(other.authorizations))
+
+    assert connection.url == other.url
+    assert connection.resume_point is None
+    assert [hello.resume for hello in other.hellos] == [None]
+    assert isinstance(connection.mailbox.take_control()[0], protocol.Welcome)
+    assert connection.received_bytes > 0
+    other.close()
+
+
+def test_a_service_that_refuses_can_be_left(service: TinyService) -> None:
+    connection = ConnectionThread(service.url, "wrong", back_off=BackOff(first_s=0.01))
+    connection.start()
+    wait_for(lambda: connection.state.phase == "refused")
+    connection.change_service(service.url, TOKEN)
+    wait_for(lambda: connection.state.phase == "open")
+    connection.close()
