@@ -191,10 +191,10 @@ class Housekeeper:
             if run.status not in ENDED or run.run in self._compacted or _is_held(run):
                 continue
             self._compacted.add(run.run)
-            if is_scattered(run.frames):
+            if is_scattered([*run.frames, *await self.store.call(RunDatabase.channels, run.run)]):
                 async with run.lock:
                     run.frames = await asyncio.to_thread(self._compacted_frames, run.run)
-                LOG.info("run %s: frames moved together", run.run)
+                LOG.info("frames moved together", extra={"run": run.run})
                 return
 
     def _compacted_frames(self, run: str) -> list[FrameRecord]:

@@ -9,9 +9,11 @@ from solver_service.store.frame_files import FrameReader, FrameWriter
 from solver_service.store.integrity import Fault, find_faults, repair
 from solver_service.store.mend import mend_run, remove_run_files
 from solver_service.store.records import (
+    ChannelRecord,
     CheckpointRecord,
     EditEvent,
     EditEventKind,
+    ForcingEvent,
     FrameRecord,
     RunEvent,
     RunRecord,
@@ -23,12 +25,14 @@ from solver_service.store.terrain_files import load_bed, save_bed
 
 __all__ = [
     "CaseShelf",
+    "ChannelRecord",
     "CheckpointRecord",
     "CheckpointStore",
     "DataFolder",
     "EditEvent",
     "EditEventKind",
     "Fault",
+    "ForcingEvent",
     "FrameReader",
     "FrameRecord",
     "FrameWriter",

@@ -1,6 +1,8 @@
 """Frame bytes in append-only segment files: write, fsync, then the row.
 
-A frame is the packed `frame` message: encoded once, stored, streamed live and replayed as the same bytes.
+A frame is the packed `frame` message: encoded once, stored, streamed live and replayed as the same bytes. The
+packed channels of a frame lie behind it and have rows of their own, made together with that of the frame, so
+that a run that is taken up never finds a frame that lacks its channels.
 Each writer begins a segment of its own (never one that another process may still hold), so a torn tail can
 only be the end of a segment whose writer is gone; it is cut off by `recover_segments`, which trusts the rows
 alone.
@@ -10,11 +12,13 @@ from __future__ import annotations
 
 import os
 import zlib
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from solver_service.errors import StoreError
 from solver_service.store.data_folder import DataFolder, fsync_folder
-from solver_service.store.records import FrameRecord
+from solver_service.store.records import ChannelRecord, FrameRecord
 from solver_service.store.room import store_failure
 from solver_service.store.run_database import RunDatabase
 
@@ -43,8 +47,17 @@ class FrameWriter:
         self._segment = ""
         self._end = 0
 
-    def append(self, *, index: int, time: float, revision: int, key_index: int, frame: bytes) -> FrameRecord:
-        """Store one frame; when this returns it survives a power cut.
+    def append(
+        self,
+        *,
+        index: int,
+        time: float,
+        revision: int,
+        key_index: int,
+        frame: bytes,
+        channels: Mapping[str, bytes] = MappingProxyType({}),
+    ) -> FrameRecord:
+        """Store one frame and its channels, by name; when this returns they survive a power cut.
 
         Raises:
             StoreError: the disk is full (`StoreFull`) or broken; nothing of the frame is visible and the call
@@ -52,7 +65,8 @@ class FrameWriter:
         """
         try:
             descriptor = self._open_segment()
-            write_all(descriptor, frame, self._end)
+            content = b"".join((frame, *channels.values()))
+            write_all(descriptor, content, self._end)
             os.fsync(descriptor)
             record = FrameRecord(
                 run=self._run,
@@ -65,7 +79,7 @@ class FrameWriter:
                 size=len(frame),
                 crc32=zlib.crc32(frame),
             )
-            self._database.insert_frame(record)
+            self._database.insert_frame(record, self._channel_records(record, channels))
         except OSError as error:
             self._cut()
             raise store_failure(
@@ -74,8 +88,16 @@ class FrameWriter:
         except StoreError:
             self._cut()
             raise
-        self._end += len(frame)
+        self._end += len(content)
         return record
+
+    def _channel_records(self, frame: FrameRecord, channels: Mapping[str, bytes]) -> Iterator[ChannelRecord]:
+        offset = frame.offset + frame.size
+        for name, content in channels.items():
+            yield ChannelRecord(
+                self._run, frame.index, name, frame.segment, offset, len(content), zlib.crc32(content)
+            )
+            offset += len(content)
 
     def close(self) -> None:
         """Close the segment."""
@@ -98,14 +120,14 @@ class FrameWriter:
 
 
 class FrameReader:
-    """Reads frames by their rows; safe from any thread."""
+    """Reads frames and channels by their rows; safe from any thread."""
 
     def __init__(self, folder: DataFolder) -> None:
         """A reader below a data folder."""
         self._folder = folder
 
-    def read(self, record: FrameRecord) -> bytes:
-        """The packed frame.
+    def read(self, record: FrameRecord | ChannelRecord) -> bytes:
+        """The packed frame or channel.
 
         Raises:
             StoreError: the bytes are missing or not those that were committed.
@@ -114,15 +136,14 @@ class FrameReader:
         try:
             with path.open("rb", buffering=0) as file:
                 file.seek(record.offset)
-                frame = file.read(record.size)
+                content = file.read(record.size)
         except OSError as error:
             raise StoreError(
-                f"frame {record.index} of run {record.run} cannot be read from {path}: "
-                f"{error.strerror or error}"
+                f"{record.name} cannot be read from {path}: {error.strerror or error}"
             ) from error
-        if len(frame) != record.size or zlib.crc32(frame) != record.crc32:
-            raise StoreError(f"frame {record.index} of run {record.run} is damaged in {path}")
-        return frame
+        if len(content) != record.size or zlib.crc32(content) != record.crc32:
+            raise StoreError(f"{record.name} is damaged in {path}")
+        return content
 
 
 def recover_segments(folder: DataFolder, database: RunDatabase, run: str) -> int:

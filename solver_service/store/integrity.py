@@ -1,7 +1,8 @@
 """Is everything that has a row whole, and has everything that is there a row; and mending what is not.
 
 Repair loses nothing that can be had: a damaged checkpoint is forgotten, for an earlier one gives the same
-bits; from a damaged frame on the frames of a run are forgotten, and resuming it computes them again.
+bits; from a damaged frame on the frames of a run are forgotten, and resuming it computes them again. A
+damaged channel is forgotten alone.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from solver_service.store.checkpoint_store import CheckpointStore
 from solver_service.store.data_folder import DataFolder
 from solver_service.store.frame_files import FrameReader, segment_files
 from solver_service.store.mend import mend_run
-from solver_service.store.records import CheckpointRecord, RunRecord
+from solver_service.store.records import ChannelRecord, CheckpointRecord, RunRecord
 from solver_service.store.run_database import RunDatabase
 
 PAUSED, STOPPED = "paused", "stopped"
@@ -33,6 +34,7 @@ class Fault:
         run: the run it is about, if any.
         from_index: frames from here on are not usable.
         checkpoint: the checkpoint that is not usable.
+        channel: the channel of a frame that is not usable.
         is_litter: whether it is only room that nobody uses.
     """
 
@@ -40,6 +42,7 @@ class Fault:
     run: str | None = None
     from_index: int | None = None
     checkpoint: CheckpointRecord | None = None
+    channel: ChannelRecord | None = None
     is_litter: bool = False
 
 
@@ -56,6 +59,7 @@ def find_faults(folder: DataFolder, database: RunDatabase, with_litter: bool = T
     runs = database.runs()
     for run in runs:
         yield from _frame_faults(folder, database, run)
+        yield from _channel_faults(folder, database, run)
         checkpoints = CheckpointStore(folder, database)
         for record in database.checkpoints(run.run):
             try:
@@ -84,6 +88,9 @@ def repair(folder: DataFolder, database: RunDatabase, faults: list[Fault]) -> li
         if fault.checkpoint is not None:
             database.delete_checkpoint(fault.checkpoint)
             done.append(f"forgot checkpoint {fault.checkpoint.name} of run {fault.run}")
+        elif fault.channel is not None:
+            database.delete_channel(fault.channel)
+            done.append(f"forgot {fault.channel.name}")
         elif fault.run is not None and fault.from_index is not None:
             first[fault.run] = min(fault.from_index, first.get(fault.run, fault.from_index))
     for run, index in first.items():
@@ -123,6 +130,15 @@ def _frame_faults(folder: DataFolder, database: RunDatabase, run: RunRecord) -> 
             yield Fault(sentence, run.run, from_index=frame.index)
             return
         due += 1
+
+
+def _channel_faults(folder: DataFolder, database: RunDatabase, run: RunRecord) -> Iterator[Fault]:
+    reader = FrameReader(folder)
+    for channel in database.channels(run.run):
+        try:
+            reader.read(channel)
+        except StoreError as error:
+            yield Fault(str(error), run.run, channel=channel)
 
 
 def _terrain_faults(folder: DataFolder, runs: list[RunRecord]) -> Iterator[Fault]:

@@ -28,6 +28,7 @@ class RunRecord:
         label: the name that people gave it, or nothing.
         pinned: whether it is kept whatever the budget of the store.
         owner: id of the token that made it; nothing for the token file.
+        channels: names of the channels that it keeps, with commas between.
     """
 
     run: str
@@ -47,6 +48,12 @@ class RunRecord:
     label: str = ""
     pinned: bool = False
     owner: str = ""
+    channels: str = ""
+
+    @property
+    def channel_names(self) -> tuple[str, ...]:
+        """The channels that it keeps."""
+        return tuple(self.channels.split(",")) if self.channels else ()
 
 
 @dataclass(frozen=True)
@@ -79,6 +86,39 @@ class FrameRecord:
     def is_key(self) -> bool:
         """Whether the frame can be decoded alone."""
         return self.key_index == self.index
+
+    @property
+    def name(self) -> str:
+        """What it is, in sentences."""
+        return f"frame {self.index} of run {self.run}"
+
+
+@dataclass(frozen=True)
+class ChannelRecord:
+    """The commit row of a channel of a frame: made with the row of the frame, and gone with it.
+
+    Attributes:
+        run: the run that computed it.
+        index: frame number.
+        channel: name of the channel.
+        segment: name of the segment file in the folder of the run.
+        offset: first byte in the segment.
+        size: number of bytes.
+        crc32: checksum of these bytes.
+    """
+
+    run: str
+    index: int
+    channel: str
+    segment: str
+    offset: int
+    size: int
+    crc32: int
+
+    @property
+    def name(self) -> str:
+        """What it is, in sentences."""
+        return f"channel {self.channel} of frame {self.index} of run {self.run}"
 
 
 @dataclass(frozen=True)

@@ -9,16 +9,18 @@ from __future__ import annotations
 
 import sqlite3
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import astuple, fields, replace
 from pathlib import Path
 
 from solver_service.errors import StoreError
 from solver_service.store.records import (
+    ChannelRecord,
     CheckpointRecord,
     EditEvent,
     EditEventKind,
+    ForcingEvent,
     FrameRecord,
     RunEvent,
     RunRecord,
@@ -39,6 +41,7 @@ def _marks(record: type) -> str:
 
 _RUN = _columns(RunRecord)
 _FRAME = _columns(FrameRecord)
+_CHANNEL = _columns(ChannelRecord)
 _CHECKPOINT = _columns(CheckpointRecord)
 
 
@@ -89,7 +92,10 @@ class RunDatabase:
             found = [row[0] for row in self._db.execute("PRAGMA integrity_check").fetchall()]
             orphans = self._db.execute("PRAGMA foreign_key_check").fetchall()
         wrong = [f"store {self._path}: {text}" for text in found if text != "ok"]
-        return wrong + [f"store {self._path}: table {row[0]} has a row without its run" for row in orphans]
+        return wrong + [
+            f"store {self._path}: table {row[0]} has a row without its {row[2].removesuffix('s')}"
+            for row in orphans
+        ]
 
     def begin_epoch(self) -> int:
         """Fence off every writer that was opened before; the service calls it once when it starts."""
@@ -101,12 +107,16 @@ class RunDatabase:
 
     # runs
 
-    def insert_run(self, run: RunRecord, edit_events: tuple[EditEvent, ...] = ()) -> None:
-        """Add a run together with the history of its working list."""
+    def insert_run(
+        self, run: RunRecord, edit_events: tuple[EditEvent, ...] = (), forcing: ForcingEvent | None = None
+    ) -> None:
+        """Add a run together with the history of its working list of edits and with its working forcing."""
         with self._transaction():
             self._db.execute(f"INSERT INTO runs ({_RUN}) VALUES ({_marks(RunRecord)})", astuple(run))
             for event in edit_events:
                 self._insert_edit(event)
+            if forcing is not None:
+                self._insert_forcing(forcing)
             self._log(
                 run.run, "created", f"case {run.case}" + (f", parent {run.parent}" if run.parent else "")
             )
@@ -135,7 +145,7 @@ class RunDatabase:
     def delete_run(self, run: str) -> None:
         """Forget a run without children and all that is known of it; its files are removed afterwards."""
         with self._transaction():
-            for table in ("frames", "checkpoints", "edit_events", "run_events", "runs"):
+            for table in ("frames", "checkpoints", "edit_events", "forcing_events", "run_events", "runs"):
                 self._db.execute(f"DELETE FROM {table} WHERE run = ?", (run,))
 
     def interrupt_active(self, active: tuple[str, ...], status: str, reason: str) -> list[str]:
@@ -164,12 +174,31 @@ class RunDatabase:
         """The history of a run under the name of its child."""
         return tuple(replace(event, run=child) for event in self.edit_events(run))
 
+    # forcing
+
+    def append_forcing_event(self, event: ForcingEvent) -> None:
+        """Record one change of a working forcing; when this returns the change is safe."""
+        with self._transaction():
+            self._insert_forcing(event)
+
+    def forcing_events(self, run: str) -> list[ForcingEvent]:
+        """The changes of the working forcing of a run in order."""
+        with _told(self._path):
+            rows = self._db.execute(
+                "SELECT run, revision, changes FROM forcing_events WHERE run = ? ORDER BY revision", (run,)
+            ).fetchall()
+        return [ForcingEvent(*row) for row in rows]
+
     # frames and checkpoints
 
-    def insert_frame(self, frame: FrameRecord) -> None:
-        """The commit of a frame: from here on it exists."""
+    def insert_frame(self, frame: FrameRecord, channels: Iterable[ChannelRecord] = ()) -> None:
+        """The commit of a frame and its channels: from here on they exist."""
         with self._transaction():
             self._db.execute(f"INSERT INTO frames ({_FRAME}) VALUES ({_marks(FrameRecord)})", astuple(frame))
+            self._db.executemany(
+                f"INSERT INTO channels ({_CHANNEL}) VALUES ({_marks(ChannelRecord)})",
+                [astuple(channel) for channel in channels],
+            )
 
     def frames(self, run: str) -> list[FrameRecord]:
         """The frames of one run by index."""
@@ -195,12 +224,42 @@ class RunDatabase:
             ).fetchone()
         return None if row is None else FrameRecord(*row)
 
-    def move_frames(self, frames: list[FrameRecord]) -> None:
-        """Record that the bytes of frames lie elsewhere now, all at once."""
+    def channels(self, run: str) -> list[ChannelRecord]:
+        """The channels of the frames of one run, by index."""
+        with _told(self._path):
+            rows = self._db.execute(
+                f'SELECT {_CHANNEL} FROM channels WHERE run = ? ORDER BY "index", channel', (run,)
+            ).fetchall()
+        return [ChannelRecord(*row) for row in rows]
+
+    def newest_channel(self, run: str, index: int, channel: str) -> ChannelRecord | None:
+        """The newest channel of a name that belongs to a frame of a run at or before an index, or None."""
+        with _told(self._path):
+            row = self._db.execute(
+                f'SELECT {_CHANNEL} FROM channels WHERE run = ? AND "index" <= ? AND channel = ? '
+                'ORDER BY "index" DESC LIMIT 1',
+                (run, index, channel),
+            ).fetchone()
+        return None if row is None else ChannelRecord(*row)
+
+    def delete_channel(self, channel: ChannelRecord) -> None:
+        """Forget a channel of a frame."""
+        with self._transaction():
+            self._db.execute(
+                'DELETE FROM channels WHERE run = ? AND "index" = ? AND channel = ?',
+                (channel.run, channel.index, channel.channel),
+            )
+
+    def move_frames(self, frames: list[FrameRecord], channels: list[ChannelRecord]) -> None:
+        """Record that the bytes of frames and channels lie elsewhere now, all at once."""
         with self._transaction():
             self._db.executemany(
                 'UPDATE frames SET segment = ?, "offset" = ? WHERE run = ? AND "index" = ?',
                 [(frame.segment, frame.offset, frame.run, frame.index) for frame in frames],
+            )
+            self._db.executemany(
+                'UPDATE channels SET segment = ?, "offset" = ? WHERE run = ? AND "index" = ? AND channel = ?',
+                [(each.segment, each.offset, each.run, each.index, each.channel) for each in channels],
             )
 
     def delete_frames_from(self, run: str, index: int) -> int:
@@ -211,25 +270,31 @@ class RunDatabase:
         return found.rowcount
 
     def frame_bytes(self) -> dict[str, int]:
-        """Size of the frames of every run that has some [bytes]."""
+        """Size of the frames and channels of every run that has some [bytes]."""
         with _told(self._path):
-            return dict(self._db.execute("SELECT run, SUM(size) FROM frames GROUP BY run").fetchall())
+            return dict(self._db.execute("SELECT run, SUM(size) FROM pieces GROUP BY run").fetchall())
 
     def owned_bytes(self, owner: str) -> int:
         """Size of the frames and checkpoints of the runs of an owner [bytes]."""
         with _told(self._path):
             row = self._db.execute(
-                "SELECT (SELECT COALESCE(SUM(size), 0) FROM frames JOIN runs USING (run) WHERE owner = ?) "
+                "SELECT (SELECT COALESCE(SUM(size), 0) FROM pieces JOIN runs USING (run) WHERE owner = ?) "
                 "+ (SELECT COALESCE(SUM(size), 0) FROM checkpoints JOIN runs USING (run) WHERE owner = ?)",
                 (owner, owner),
             ).fetchone()
         return int(row[0])
 
+    def stored_bytes(self) -> dict[str, int]:
+        """Size of the frames and checkpoints of every run that has some [bytes]."""
+        both = "SELECT run, size FROM pieces UNION ALL SELECT run, size FROM checkpoints"
+        with _told(self._path):
+            return dict(self._db.execute(f"SELECT run, SUM(size) FROM ({both}) GROUP BY run").fetchall())
+
     def used_bytes(self) -> int:
         """Size of all frames and checkpoints [bytes]."""
         with _told(self._path):
             row = self._db.execute(
-                "SELECT (SELECT COALESCE(SUM(size), 0) FROM frames) "
+                "SELECT (SELECT COALESCE(SUM(size), 0) FROM pieces) "
                 "+ (SELECT COALESCE(SUM(size), 0) FROM checkpoints)"
             ).fetchone()
         return int(row[0])
@@ -238,7 +303,7 @@ class RunDatabase:
         """Committed length of every segment file of a run."""
         with _told(self._path):
             rows = self._db.execute(
-                'SELECT segment, MAX("offset" + size) FROM frames WHERE run = ? GROUP BY segment', (run,)
+                'SELECT segment, MAX("offset" + size) FROM pieces WHERE run = ? GROUP BY segment', (run,)
             ).fetchall()
         return {str(segment): int(end) for segment, end in rows}
 
@@ -279,6 +344,9 @@ class RunDatabase:
                 "SELECT run, wall_time, kind, detail FROM run_events WHERE run = ? ORDER BY rowid", (run,)
             ).fetchall()
         return [RunEvent(*row) for row in rows]
+
+    def _insert_forcing(self, event: ForcingEvent) -> None:
+        self._db.execute("INSERT INTO forcing_events VALUES (?, ?, ?)", astuple(event))
 
     def _insert_edit(self, event: EditEvent) -> None:
         self._db.execute(

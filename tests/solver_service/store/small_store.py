@@ -23,7 +23,7 @@ RUN = RunRecord("r1", "case", "f00d", "Title", None, 0, "finished", "", 1e3, 5.0
 
 
 class SmallStore:
-    """Rows and files of run r1, which has 40 frames in many segments, and of r2, its child."""
+    """Rows and files of run r1, which has 40 frames with channels in many segments, and of r2, its child."""
 
     def __init__(self, root: Path) -> None:
         self.folder = DataFolder(root)
@@ -42,7 +42,14 @@ class SmallStore:
         for index in range(record.branch_index, record.branch_index + count):
             frame = encoder.encode(record.run, index, 5.0 * index, 0, rng.random(SHAPE))
             writer.append(
-                index=index, time=5.0 * index, revision=0, key_index=peek_frame(frame).key_index, frame=frame
+                index=index,
+                time=5.0 * index,
+                revision=0,
+                key_index=peek_frame(frame).key_index,
+                frame=frame,
+                channels={"maxima": rng.bytes(50), "velocity": rng.bytes(200)}
+                if index % 4 == 0
+                else {"velocity": rng.bytes(200)},
             )
         writer.close()
         checkpoints = CheckpointStore(self.folder, self.database)
@@ -54,6 +61,11 @@ class SmallStore:
         """The bytes of all frames of a run."""
         reader = FrameReader(self.folder)
         return [reader.read(frame) for frame in self.database.frames(run)]
+
+    def channels(self, run: str) -> dict[tuple[int, str], bytes]:
+        """The bytes of all channels of a run, by frame and name."""
+        reader = FrameReader(self.folder)
+        return {(each.index, each.channel): reader.read(each) for each in self.database.channels(run)}
 
     def damage(self, path: Path) -> None:
         """Turn a byte in the middle of a file over."""

@@ -27,6 +27,9 @@ def test_a_copy_has_every_run_frame_and_checkpoint_and_no_fault(store: SmallStor
         assert database.checkpoints(run) == store.database.checkpoints(run)
         frames = [FrameReader(folder).read(row) for row in database.frames(run)]
         assert frames == store.frames(run)
+        channels = [FrameReader(folder).read(row) for row in database.channels(run)]
+        assert channels == list(store.channels(run).values())
+        assert len(channels) > len(frames)
     assert size > sum(len(frame) for frame in store.frames("r1"))
     assert not list(tmp_path.glob("*.writing"))
     database.close()

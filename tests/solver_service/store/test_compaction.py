@@ -10,21 +10,24 @@ from tests.solver_service.store.small_store import SmallStore
 
 
 def test_the_frames_of_many_segments_lie_in_one_afterwards_with_the_same_bytes(store: SmallStore) -> None:
-    before = store.frames("r1")
+    before, channels = store.frames("r1"), store.channels("r1")
+    assert len(channels) == 50
     assert len(segment_files(store.folder, "r1")) == 40
     assert is_scattered(store.database.frames("r1"))
     moved = compact_run(store.folder, store.database, "r1")
     assert moved == store.database.frames("r1")
     assert [path.name for path in segment_files(store.folder, "r1")] == ["000041.segment"]
-    assert store.frames("r1") == before
-    assert not is_scattered(moved)
+    assert (store.frames("r1"), store.channels("r1")) == (before, channels)
+    assert not is_scattered([*moved, *store.database.channels("r1")])
     assert not list(find_faults(store.folder, store.database))
 
 
 def test_segments_keep_to_their_size(store: SmallStore) -> None:
-    size = sum(frame.size for frame in store.database.frames("r1"))
+    size = sum(piece.size for piece in (*store.database.frames("r1"), *store.database.channels("r1")))
     moved = compact_run(store.folder, store.database, "r1", segment_bytes=size // 4)
     assert 4 <= len({frame.segment for frame in moved}) <= 5
+    assert not is_scattered([*moved, *store.database.channels("r1")], segment_bytes=size // 4)
+    assert is_scattered(moved, segment_bytes=size), "as if the channels had no size and no segments were full"
     assert not list(find_faults(store.folder, store.database))
 
 

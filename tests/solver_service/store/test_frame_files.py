@@ -55,6 +55,24 @@ def test_a_segment_that_is_large_enough_is_followed_by_a_new_one(
     assert [reader.read(record)[0] for record in database.frames("r1")] == list(range(6))
 
 
+def test_channels_are_read_back_and_the_newest_at_or_before_a_frame_is_found(
+    folder: DataFolder, database: RunDatabase
+) -> None:
+    writer, reader = FrameWriter(folder, database, "r1"), FrameReader(folder)
+    for index in range(3):
+        channels = {"maxima": b"old"} if index == 0 else {"velocity": bytes([index]) * index}
+        writer.append(index=index, time=0.0, revision=0, key_index=index, frame=b"frame", channels=channels)
+    writer.close()
+    assert [reader.read(row) for row in database.frames("r1")] == [b"frame"] * 3
+    assert [reader.read(row) for row in database.channels("r1")] == [b"old", b"\1", b"\2\2"]
+    newest = [database.newest_channel("r1", index, "maxima") for index in range(3)]
+    assert [row and row.index for row in newest] == [0, 0, 0]
+    assert database.newest_channel("r1", 0, "velocity") is None
+    row = database.newest_channel("r1", 9, "velocity")
+    assert row is not None
+    assert (row.index, reader.read(row)) == (2, b"\2\2")
+
+
 def test_a_second_writer_never_touches_the_segment_of_the_first(
     folder: DataFolder, database: RunDatabase
 ) -> None:

@@ -38,6 +38,29 @@ def test_from_a_damaged_frame_on_a_run_is_computed_again(store: SmallStore, inde
     assert status["r2"] == ("finished", "")
 
 
+def test_a_damaged_channel_is_forgotten_alone(store: SmallStore) -> None:
+    row = store.database.channels("r1")[1]
+    path = store.folder.frames("r1") / row.segment
+    content = bytearray(path.read_bytes())
+    content[row.offset] ^= 0xFF
+    path.write_bytes(content)
+    (sentence,) = sentences(store)
+    assert f"{row.channel} of frame {row.index} of run r1 is damaged" in sentence
+    assert mend(store) == [f"forgot channel {row.channel} of frame {row.index} of run r1"]
+    assert sentences(store) == []
+    assert len(store.frames("r1")) == 40
+    assert len(store.channels("r1")) == 49
+    assert {run.status for run in store.database.runs()} == {"finished"}
+
+
+def test_frames_that_are_forgotten_take_their_channels_along(store: SmallStore) -> None:
+    store.damage(segment_files(store.folder, "r1")[17])
+    mend(store)
+    assert max(index for index, _ in store.channels("r1")) == 16
+    store.database.delete_run("r2")
+    assert store.channels("r2") == {}
+
+
 def test_a_missing_segment_is_found(store: SmallStore) -> None:
     segment_files(store.folder, "r1")[20].unlink()
     assert "cannot be read" in sentences(store)[0]

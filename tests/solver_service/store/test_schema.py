@@ -52,6 +52,7 @@ def test_a_store_of_the_first_version_gets_the_tables_of_a_new_one_and_keeps_its
 
     upgraded = RunDatabase(old)
     (run,) = upgraded.runs()
+    assert run.channel_names == ()
     upgraded.close()
 
     assert (run.run, run.case, run.label, run.pinned, run.owner) == ("r1", "c", "", False, "")
@@ -71,11 +72,12 @@ def test_the_bytes_of_an_owner_are_those_of_its_own_runs(tmp_path: Path, owner: 
     with closing(sqlite3.connect(path)) as rows:
         for run, whose, size in (("r1", "a", 10), ("r2", "b", 200), ("r3", "b", 3000)):
             rows.execute(
-                "INSERT INTO runs VALUES (?,'c','f','t',NULL,0,'paused','',9.0,1.0,'cpu',0,'','','',0,?)",
+                "INSERT INTO runs VALUES (?,'c','f','t',NULL,0,'paused','',9.0,1.0,'cpu',0,'','','',0,?,'')",
                 (run, whose),
             )
             rows.execute("INSERT INTO frames VALUES (?,0,0.0,0,0,'s',0,?,0)", (run, size))
+            rows.execute("INSERT INTO channels VALUES (?,0,'maxima','s',?,5,0)", (run, size))
             rows.execute("INSERT INTO checkpoints VALUES (?,0.0,0,'n',0,?)", (run, size + 1))
         rows.commit()
-    assert database.owned_bytes(owner) == {"a": 21, "b": 6402, "": 0}[owner]
+    assert database.owned_bytes(owner) == {"a": 26, "b": 6412, "": 0}[owner]
     database.close()
