@@ -28,6 +28,7 @@ class RunRecord:
         label: the name that people gave it, or nothing.
         pinned: whether it is kept whatever the budget of the store.
         owner: id of the token that made it; nothing for the token file.
+        forcing: the packed changes of its forcing, from its first frame on (opaque bytes; none by default).
         channels: names of the channels that it keeps, with commas between.
     """
 
@@ -48,6 +49,7 @@ class RunRecord:
     label: str = ""
     pinned: bool = False
     owner: str = ""
+    forcing: bytes = b"\x90"
     channels: str = ""
 
     @property
@@ -161,6 +163,21 @@ class EditEvent:
     sequence: int
     kind: EditEventKind
     edit: bytes
+
+
+@dataclass(frozen=True)
+class ForcingEvent:
+    """One change of the working forcing of a run.
+
+    Attributes:
+        run: the run.
+        revision: of the working forcing after it; 1 for the first.
+        changes: the whole list of changes after it (opaque bytes).
+    """
+
+    run: str
+    revision: int
+    changes: bytes
 
 
 @dataclass(frozen=True)
