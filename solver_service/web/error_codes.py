@@ -6,6 +6,7 @@ from protocol import ProtocolError
 from solver_service.errors import (
     AccessError,
     CaseError,
+    CaseTooLarge,
     DeviceError,
     ModelError,
     QuotaError,
@@ -24,6 +25,7 @@ _CODES: dict[type[ServiceError], tuple[str, int]] = {
     StoreFull: ("store_failed", 507),
     DeviceError: ("no_such_device", 422),
     CaseError: ("invalid_case", 422),
+    CaseTooLarge: ("too_large", 413),
     TerrainError: ("invalid_case", 422),
     ModelError: ("invalid_case", 422),
 }
