@@ -72,7 +72,7 @@ def test_the_bytes_of_an_owner_are_those_of_its_own_runs(tmp_path: Path, owner: 
     with closing(sqlite3.connect(path)) as rows:
         for run, whose, size in (("r1", "a", 10), ("r2", "b", 200), ("r3", "b", 3000)):
             rows.execute(
-                "INSERT INTO runs VALUES (?,'c','f','t',NULL,0,'paused','',9.0,1.0,'cpu',0,'','','',0,?,'')",
+                "INSERT INTO runs VALUES (?,'c','f','t',NULL,0,'paused','',9.0,1.0,'cpu',0,'','','',0,?,'','')",
                 (run, whose),
             )
             rows.execute("INSERT INTO frames VALUES (?,0,0.0,0,0,'s',0,?,0)", (run, size))
