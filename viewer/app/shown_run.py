@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 import protocol
 from viewer.net import FrameKey, FrameLoader
-from viewer.world import EditDocument, Heightfield, Rect, WaterTimeline
+from viewer.world import EditDocument, Heightfield, MovedBed, Rect, WaterTimeline, union_rect
 
 __all__ = ["ShownRun"]
 
@@ -50,6 +50,7 @@ class ShownRun:
         self.grid = info.grid.geometry
         self._serial = next(_SERIAL)
         self._drawn_revision = 0 if heightfield is None else FOREIGN
+        self._moved: MovedBed | None = None
         self.heightfield = Heightfield(self.grid, z_b_base) if heightfield is None else heightfield
         self.document = EditDocument(self.grid, z_b_base)
         self.timeline = WaterTimeline(info.output_interval)
@@ -118,12 +119,37 @@ class ShownRun:
             index += 1
         return index
 
-    def refresh_ground(self) -> bool:
-        """Bring the heightfield up to date with the edits; return whether anything changed.
+    def refresh_ground(self, moved: MovedBed | None = None) -> bool:
+        """Bring the heightfield up to date with the edits and breaches; return whether anything changed.
+
+        Args:
+            moved: what breaches have moved at the time shown; None for nothing.
 
         Raises:
             protocol.EditError: the line being drawn does not fit the terrain.
         """
+        has_edited = self._refresh_edits()
+        if moved is self._moved and not (has_edited and moved is not None):
+            return has_edited
+        self._lay(moved)
+        return True
+
+    def _lay(self, moved: MovedBed | None) -> None:
+        """Put the bed of the edits where it had moved, and then lay what has moved now over it."""
+        ncols = self.grid.ncols
+        rects = [part.rect(ncols) for part in (self._moved, moved) if part is not None]
+        self._moved = moved
+        rect = union_rect(rects[0], rects[-1])
+        if rect is None:
+            return
+        ground = self.document.preview().z_b
+        part = ground[rect[0] : rect[2], rect[1] : rect[3]].copy()
+        if moved is not None:
+            rows, cols = np.divmod(moved.cells, ncols)
+            part[rows - rect[0], cols - rect[1]] = moved.on(ground[rows, cols])
+        self.heightfield.set_part(rect, part)
+
+    def _refresh_edits(self) -> bool:
         preview = self.document.preview()
         if preview.revision == self._drawn_revision:
             return False

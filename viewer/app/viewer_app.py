@@ -206,10 +206,10 @@ class ViewerApp:
         shown = self.shown
         if shown is not None and self.camera_work is not None:
             changed |= self.camera_work.advance(wall_dt)
-            changed |= shown.refresh_ground()
             changed |= self.playback.advance(shown, wall_dt)
             if not self.control.is_held:
                 changed |= self.feed.advance(shown, self.clock.time)
+            changed |= shown.refresh_ground(self.feed.moved)
             changed |= self.comparison.advance(shown)
             changed |= self.water.advance(shown, self.options)
             self._status_stale |= self._levee_watch.look(shown, self.feed, self.options.depth_shown)

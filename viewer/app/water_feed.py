@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as wall_clock
+from collections import OrderedDict
 from collections.abc import Callable, Hashable
 
 import numpy as np
@@ -13,11 +14,13 @@ from viewer.app.run_book import RunBook
 from viewer.app.shown_run import ShownRun
 from viewer.net import DecodedWater, FrameKey, FrameLoader
 from viewer.render import WaterFrame, WaterPair
+from viewer.world import MovedBed, bed_with, blended_bed
 
 __all__ = ["WaterFeed"]
 
 AHEAD = 3
 """Frames decoded ahead of the playback time."""
+MOVED_BEDS_KEPT = 4
 REQUEST_PAUSE_S = 1.0
 """Wall time before a missing frame is asked for once more."""
 
@@ -33,6 +36,7 @@ class WaterFeed:
     Attributes:
         pair: the water on the picture, None before the first frame.
         keys: the frames of `pair`.
+        moved: what breaches have moved of the bed between the frames of `pair`; None for nothing.
         also_wanted: frames that something else needs at the same time.
     """
 
@@ -42,15 +46,19 @@ class WaterFeed:
         self._request = request
         self._requested: dict[int, float] = {}
         self._beds: dict[Hashable, npt.NDArray[np.float32]] = {}
+        self._moved: OrderedDict[Hashable, tuple[MovedBed, npt.NDArray[np.float32]]] = OrderedDict()
         self.pair: WaterPair | None = None
         self.keys: tuple[FrameKey, FrameKey] | None = None
+        self.moved: MovedBed | None = None
         self.also_wanted: tuple[FrameKey, ...] = ()
 
     def forget(self) -> None:
         """Show no water: another terrain is shown."""
         self.pair = None
         self.keys = None
+        self.moved = None
         self._requested.clear()
+        self._moved.clear()
         self._beds.clear()
 
     def wanted(self, shown: ShownRun, time: float) -> tuple[list[FrameKey], float]:
@@ -77,7 +85,9 @@ class WaterFeed:
         if self.pair is not None and drawn == self.keys and alpha == self.pair.alpha:
             return False
         self.keys = drawn
-        self.pair = WaterPair(self._frame(shown, first), self._frame(shown, second), alpha)
+        (before, moved_before), (after, moved_after) = self._frame(shown, first), self._frame(shown, second)
+        self.pair = WaterPair(before, after, alpha)
+        self.moved = blended_bed(moved_before, moved_after, alpha)
         return True
 
     def depths(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32], float] | None:
@@ -86,9 +96,26 @@ class WaterFeed:
             return None
         return self.pair.first.h, self.pair.second.h, self.pair.alpha
 
-    def _frame(self, shown: ShownRun, water: DecodedWater) -> WaterFrame:
+    def _frame(self, shown: ShownRun, water: DecodedWater) -> tuple[WaterFrame, MovedBed | None]:
         edits = self._book.edits_below(water.run, water.revision)
-        return WaterFrame((water.run, water.index), water.h, water.states, self._bed(shown, edits))
+        bed, moved = self._bed(shown, edits), None
+        if water.bed_cells.size:
+            bed, moved = self._moved_bed(bed, water)
+        return WaterFrame((water.run, water.index), water.h, water.states, bed), moved
+
+    def _moved_bed(
+        self, bed: npt.NDArray[np.float32], water: DecodedWater
+    ) -> tuple[npt.NDArray[np.float32], MovedBed]:
+        """Return the bed with what breaches have moved; the same objects while it moves no further."""
+        name = (id(bed), water.bed_cells.tobytes(), water.bed_values.tobytes())
+        if name not in self._moved:
+            moved = MovedBed(water.bed_cells, water.bed_values, bed.ravel()[water.bed_cells])
+            self._moved[name] = (moved, bed_with(bed, moved))
+            while len(self._moved) > MOVED_BEDS_KEPT:
+                self._moved.popitem(last=False)
+        self._moved.move_to_end(name)
+        moved, laid = self._moved[name]
+        return laid, moved
 
     def _bed(self, shown: ShownRun, edits: tuple[protocol.Edit, ...]) -> npt.NDArray[np.float32]:
         name = (shown.root, tuple(edit.id for edit in edits))

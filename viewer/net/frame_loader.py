@@ -36,6 +36,8 @@ class DecodedWater:
     Attributes:
         h: depth [m], float32 [nrows, ncols].
         states: block states, uint8 [block_rows, block_cols].
+        bed_cells: cells whose bed breaches have moved, flat indices, int64 [k].
+        bed_values: their bed [m, datum-relative], float32 [k].
         time: simulation time [s].
         revision: revision of the edits in the bed below this water.
     """
@@ -46,6 +48,8 @@ class DecodedWater:
     revision: int
     h: npt.NDArray[np.float32]
     states: npt.NDArray[np.uint8]
+    bed_cells: npt.NDArray[np.int64]
+    bed_values: npt.NDArray[np.float32]
 
 
 class FrameLoader:
@@ -245,4 +249,13 @@ def _decode(decoder: protocol.FrameDecoder, packed: Sequence[bytes]) -> protocol
 
 
 def _water(decoded: protocol.DecodedFrame) -> DecodedWater:
-    return DecodedWater(decoded.run, decoded.index, decoded.time, decoded.revision, decoded.h, decoded.states)
+    return DecodedWater(
+        decoded.run,
+        decoded.index,
+        decoded.time,
+        decoded.revision,
+        decoded.h,
+        decoded.states,
+        decoded.bed_cells,
+        decoded.bed_values,
+    )

@@ -7,6 +7,7 @@ from viewer.world.edit_measures import EditMeasure, measure_edits
 from viewer.world.frame_cache import FrameCache
 from viewer.world.frustum import Frustum
 from viewer.world.heightfield import Heightfield, Rect, union_rect
+from viewer.world.moved_bed import MovedBed, bed_with, blended_bed
 from viewer.world.orbit_motion import Flight, Move, OrbitMotion
 from viewer.world.playback_clock import PlaybackClock
 from viewer.world.probe import ProbeReading, probe
@@ -36,6 +37,7 @@ __all__ = [
     "Heightfield",
     "MapView",
     "Move",
+    "MovedBed",
     "OrbitMotion",
     "PlaybackClock",
     "Point",
@@ -45,6 +47,8 @@ __all__ = [
     "WaterTimeline",
     "WorldFrame",
     "arrival_scale",
+    "bed_with",
+    "blended_bed",
     "flood_extent",
     "ground_in_view",
     "hazard_rating",

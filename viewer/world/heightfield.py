@@ -50,6 +50,7 @@ class Heightfield:
         """
         self.grid = grid
         self.z_b = self._checked(z_b)
+        self._is_own = False
         self.revision = 0
         self._changes: list[tuple[int, Rect]] = []
         self.z_min = float(self.z_b.min())
@@ -66,9 +67,23 @@ class Heightfield:
         Raises:
             TerrainDataError: as in the constructor.
         """
-        self.z_b = self._checked(z_b)
+        self.z_b, self._is_own = self._checked(z_b), False
         nrows, ncols = self.z_b.shape
-        rect = (0, 0, nrows, ncols) if dirty is None else dirty
+        self._note_change((0, 0, nrows, ncols) if dirty is None else dirty)
+
+    def set_part(self, rect: Rect, z_b: npt.NDArray[np.float32]) -> None:
+        """Replace the bed within a rectangle; an array given to `set` stays as it is.
+
+        Args:
+            rect: the rectangle of cells.
+            z_b: the bed there [m], float32, shape of the rectangle, finite.
+        """
+        if not self._is_own:
+            self.z_b, self._is_own = self.z_b.copy(), True
+        self.z_b[rect[0] : rect[2], rect[1] : rect[3]] = z_b
+        self._note_change(rect)
+
+    def _note_change(self, rect: Rect) -> None:
         if rect[2] <= rect[0] or rect[3] <= rect[1]:
             return
         self.revision += 1

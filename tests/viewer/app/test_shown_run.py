@@ -7,6 +7,7 @@ from tests.viewer.app.test_run_book import edit, info
 from tests.viewer.tiny_service import valley
 from viewer.app.shown_run import ShownRun
 from viewer.net import FrameLoader
+from viewer.world import MovedBed
 
 
 def branch() -> protocol.RunInfo:
@@ -91,4 +92,41 @@ def test_ground_that_was_previewed_but_never_drawn_is_put_right(loader: FrameLoa
         revision = shown.heightfield.revision
 
     np.testing.assert_array_equal(texture, shown.document.preview().z_b)
+    loader.close()
+
+
+def gap(depth: float) -> MovedBed:
+    cells = np.array([20 * 96 + 30, 20 * 96 + 31, 22 * 96 + 30], np.int64)
+    before = valley().ravel()[cells]
+    return MovedBed(cells, before - np.float32(depth), before)
+
+
+def test_a_breach_lies_on_the_ground_at_its_time_and_is_gone_before_it(loader: FrameLoader) -> None:
+    shown = ShownRun(info("a"), valley(), loader)
+    breach = gap(2.0)
+
+    assert shown.refresh_ground(breach)
+    assert shown.heightfield.z_b.ravel()[breach.cells].tolist() == breach.z_b.tolist()
+    assert (shown.heightfield.z_b != valley()).sum() == 3
+    assert not shown.refresh_ground(breach)
+    assert shown.refresh_ground(gap(3.0))
+    assert shown.heightfield.z_b[20, 30] == valley()[20, 30] - np.float32(3.0)
+    assert shown.refresh_ground(None)
+    np.testing.assert_array_equal(shown.heightfield.z_b, valley())
+    loader.close()
+
+
+def test_a_breach_stays_when_an_edit_is_drawn_elsewhere_or_over_it(loader: FrameLoader) -> None:
+    shown = ShownRun(info("a"), valley(), loader)
+    breach = gap(2.0)
+    shown.refresh_ground(breach)
+    shown.document.mirror(1, [edit("one")], True, False)
+
+    assert shown.refresh_ground(breach)
+    expected = shown.document.preview().z_b.copy()
+    expected.ravel()[breach.cells] = breach.on(expected.ravel()[breach.cells])
+    np.testing.assert_array_equal(shown.heightfield.z_b, expected)
+    shown.document.mirror(2, [], False, True)
+    shown.refresh_ground(None)
+    np.testing.assert_array_equal(shown.heightfield.z_b, valley())
     loader.close()

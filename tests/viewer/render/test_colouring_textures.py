@@ -24,7 +24,7 @@ def steps(shape: tuple[int, int], limits: tuple[float, ...], seed: int) -> np.nd
     rng = np.random.default_rng(seed)
     at = np.asarray(limits, np.float32)
     below = np.nextafter(at, np.float32(0.0))
-    choices = np.concatenate([at, below, rng.uniform(0.001, 1.5 * at[-1], 12).astype(np.float32)])
+    choices = np.concatenate([at, below, rng.uniform(0.02, 1.5 * at[-1], 12).astype(np.float32)])
     return rng.choice(choices, shape).astype(np.float32)
 
 
@@ -84,6 +84,23 @@ def test_what_the_colour_shows_is_what_the_cell_holds_also_at_the_limits(
 
     assert share(0.0) == 0.0
     assert share(-2e-6) > 0.005  # what is a hair below the limits must be told apart
+
+
+def test_a_film_too_thin_to_be_shown_has_no_class(
+    make_heightfield: Callable, make_stage: Callable
+) -> None:
+    stage = make_stage(make_heightfield(height=4.0), (300, 200))
+    scale = water_scale(WaterColour.DEPTH, 1.0)
+    assert scale is not None
+
+    def draw(depth: float, colouring: Colouring | None) -> np.ndarray:
+        frame = WaterFrame(depth, np.full((257, 321), depth, np.float32))
+        options = RenderOptions(depth_shown=0.01, **BARE)
+        return stage.draw(FrameInputs(ABOVE, WaterPair(frame, frame), options=options, colouring=colouring))
+
+    colouring = Colouring(WaterColour.DEPTH, scale)
+    assert np.array_equal(draw(0.009, None), draw(0.009, colouring))
+    assert not np.array_equal(draw(0.011, None), draw(0.011, colouring))
 
 
 def test_between_two_frames_depth_and_speed_are_blended(

@@ -190,6 +190,25 @@ def test_a_raised_preview_stands_out_of_the_water_at_an_unchanged_level(
     assert aside[2] == pytest.approx(hilly.sample(aside[0], aside[1]) + 2.0, abs=0.2)
 
 
+def test_while_the_bed_falls_between_two_frames_the_level_is_blended(
+    hilly: Heightfield, make_stage: Callable
+) -> None:
+    stage = make_stage(hilly)
+    camera = Camera((0.0, 0.0, 0.0), 300.0, 0.0, math.pi / 2)
+    before = hilly.z_b.copy()
+    after = before - np.float32(4.0)
+    first = WaterFrame("a", np.full(before.shape, 1.0, np.float32), z_b=before)
+    second = WaterFrame("b", np.full(before.shape, 3.0, np.float32), z_b=after)
+    hilly.set(0.5 * (before + after))
+    stage.draw(FrameInputs(camera, WaterPair(first, second, 0.5), options=RenderOptions(**BARE)))
+    place = stage.renderer.pick(240.0, 150.0)
+
+    assert place is not None
+    # Levels 1 m above the old and 3 m above the new bed, which lies 4 m lower: half way, the old bed itself.
+    rise = 0.5 * (1.0 + 3.0 - 4.0)
+    assert place[2] == pytest.approx(hilly.sample(place[0], place[1]) + 2.0 + rise, abs=0.1)
+
+
 def test_water_of_another_size_is_refused(hilly: Heightfield, make_stage: Callable) -> None:
     stage = make_stage(hilly)
     frame = WaterFrame("small", np.zeros((10, 10), dtype=np.float32))

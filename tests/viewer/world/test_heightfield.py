@@ -89,3 +89,19 @@ def test_the_union_with_nothing_is_the_rectangle_itself() -> None:
     assert union_rect(None, (1, 2, 3, 4)) == (1, 2, 3, 4)
     assert union_rect((1, 2, 3, 4), None) == (1, 2, 3, 4)
     assert union_rect((1, 2, 3, 4), (0, 3, 2, 9)) == (0, 2, 3, 9)
+
+
+def test_a_part_is_replaced_without_touching_the_array_that_was_given() -> None:
+    field = Heightfield(GRID, PLANE)
+    given = PLANE.copy()
+    field.set(given)
+    revision = field.revision
+    field.set_part((1, 2, 3, 4), np.full((2, 2), -9.0, np.float32))
+
+    assert np.array_equal(given, PLANE)
+    assert (field.z_b[1:3, 2:4] == -9.0).all()
+    assert (field.z_b == -9.0).sum() == 4
+    assert field.z_min == -9.0
+    assert field.changed_since(revision) == (1, 2, 3, 4)
+    field.set(given, (0, 0, 1, 1))
+    assert np.array_equal(field.z_b, PLANE)

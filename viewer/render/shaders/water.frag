@@ -19,13 +19,13 @@ const vec3 SCATTER_SHALLOW = vec3(0.27, 0.48, 0.53);
 const vec3 SCATTER_DEEP = vec3(0.06, 0.21, 0.37);
 const float F0 = 0.0204;                        // ((1 - 1.333) / (1 + 1.333))^2
 
-// A dry cell has no class, though the surface of its neighbours may run out over its rim.
+// A cell that is dry, or too thinly wet to be shown, has no class, though the surface of its neighbours may run out over its rim.
 int class_here() {
     if (coloured_by == 0) return NO_CLASS;
     if (coloured_by == 4) return class_of_whole_run(uv);
     ivec2 cell = cell_at(uv);
     float h = computed_depth(cell);
-    if (h <= 0.0) return NO_CLASS;
+    if (h <= 0.0 || h < picture.z) return NO_CLASS;
     if (coloured_by == 1) return class_of(h);
     float speed = mix(texelFetch(field_first, cell, 0).r, texelFetch(field_second, cell, 0).r, alpha);
     return class_of(coloured_by == 2 ? speed : hazard_rating(h, speed));
