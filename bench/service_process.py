@@ -10,7 +10,7 @@ import urllib.request
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import IO, Any, TypeVar
 
 from websockets.sync.client import ClientConnection, connect
 
@@ -36,11 +36,13 @@ class ServiceProcess:
 
     Args:
         data_dir: the data folder.
+        stderr: file for its log lines; those of this process where there is none.
         options: further fields of `ServiceSettings`.
     """
 
-    def __init__(self, data_dir: Path, **options: Any) -> None:
+    def __init__(self, data_dir: Path, stderr: IO[bytes] | None = None, **options: Any) -> None:
         self.data_dir = data_dir
+        self._stderr = stderr
         self._options = options
         self.url = ""
         self.http = ""
@@ -50,7 +52,9 @@ class ServiceProcess:
     def __enter__(self) -> ServiceProcess:
         """Start it and wait for its ready line."""
         command = [sys.executable, "-c", _SERVE, str(self.data_dir), json.dumps(self._options)]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._stderr, text=True
+        )
         assert self.process.stdout is not None
         line = self.process.stdout.readline()
         if not line:

@@ -126,6 +126,10 @@ def serve(
     restart_attempts: Annotated[
         int | None, typer.Option("--restart-attempts", help="Restarts of a run in ten minutes.")
     ] = None,
+    log_format: Annotated[str | None, typer.Option("--log-format", help="Log lines as text or json.")] = None,
+    log_level: Annotated[
+        str | None, typer.Option("--log-level", help="debug, info, warning or error.")
+    ] = None,
     max_runs: MaxRuns = None,
     max_cells: MaxCells = None,
     max_gpu_bytes: MaxGpuBytes = None,
@@ -153,6 +157,8 @@ def serve(
         tls_key=tls_key,
         store_bytes=store_bytes,
         restart_attempts=restart_attempts,
+        log_format=log_format,
+        log_level=log_level,
         max_runs=max_runs,
         max_cells=max_cells,
         max_gpu_bytes=max_gpu_bytes,

@@ -68,6 +68,8 @@ class RunRegistry:
         restart_attempts: int = 3,
         restart_within_s: float = 600.0,
         room: RoomRules | None = None,
+        log_format: str = "text",
+        log_level: str = "warning",
     ) -> None:
         """Open the store; `open` then begins the work.
 
@@ -82,6 +84,8 @@ class RunRegistry:
             restart_attempts: how often a run whose worker died is taken up again by itself.
             restart_within_s: the time in which these attempts count [s].
             room: how much the store may take.
+            log_format: "text" or "json", for the lines of the workers.
+            log_level: least level of these lines.
 
         Raises:
             StoreError: the folder is in use or cannot be used.
@@ -93,7 +97,7 @@ class RunRegistry:
         self._store = StoreThread(self._folder)
         self._reader = FrameReader(self._folder)
         self._worker_settings = WorkerSettings(
-            data_dir, 0, ring_bytes, checkpoint_interval_s, threads, device
+            data_dir, 0, ring_bytes, checkpoint_interval_s, threads, device, log_format, log_level
         )
         self._spare_workers = spare_workers
         self._room = room or RoomRules()

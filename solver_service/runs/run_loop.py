@@ -173,6 +173,7 @@ class RunLoop:
         course.steps_before = computation.solver.step_count
         course.next_index = next_index_after(course, computation.solver.time)
         course.computing = True
+        LOG.info("computing on %s from %g s", computation.device, computation.solver.time)
         self._report(Running(begin.run))
 
     def _open_grouping(self, run: str) -> FrameGrouping:

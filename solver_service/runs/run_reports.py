@@ -91,7 +91,7 @@ class RunReports:
             case Remark():
                 self.notice("warning", report.message, report.run)
             case CheckpointStored():
-                LOG.debug("run %s: checkpoint at %s s", report.checkpoint.run, report.checkpoint.time)
+                LOG.debug("checkpoint at %s s", report.checkpoint.time, extra={"run": report.checkpoint.run})
 
     def frames_found(self, run: Run, frames: list[FrameRecord]) -> None:
         """Believe the rows of a run for which nobody writes: some may never have been reported."""
@@ -123,7 +123,7 @@ class RunReports:
     def _failed(self, worker: Worker, report: Failed) -> None:
         worker.case = None
         if report.run not in self._tree:
-            LOG.error("worker %d: %s", worker.number, report.message)
+            LOG.error("worker %d: %s", worker.number, report.message, extra={"run": report.run})
             return
         run = self._tree.get(report.run)
         if run.status in ACTIVE:
@@ -132,7 +132,7 @@ class RunReports:
 
     def notice(self, level: Literal["info", "warning", "error"], text: str, run: str) -> None:
         """Tell everybody something that a person should read."""
-        LOG.warning("run %s: %s", run, text)
+        LOG.warning("%s", text, extra={"run": run})
         self._audience.announce(Notice(level, text[:TEXT_LENGTH], run))
 
 

@@ -11,6 +11,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 
 from solver_service.errors import RunError
+from solver_service.runs.native_lines import tell_lines
 from solver_service.runs.worker_failure import FailureKind, failure_of_exit
 from solver_service.runs.worker_messages import (
     Begin,
@@ -87,11 +88,14 @@ class Worker:
         return self._dead.is_set()
 
     async def start(self, settings: WorkerSettings) -> None:
-        """Start the process and the thread that listens to it."""
+        """Start the process and the threads that listen to it."""
         loop = asyncio.get_running_loop()
-        process, connection = await asyncio.to_thread(start_worker, settings)
+        process, connection, errors = await asyncio.to_thread(start_worker, settings)
         self._process, self._connection = process, connection
         self.pid = process.pid
+        threading.Thread(
+            target=tell_lines, args=(errors, lambda: self.run), name=f"lines-{self.number}", daemon=True
+        ).start()
         threading.Thread(
             target=self._listen, args=(loop, connection), name=f"worker-{self.number}", daemon=True
         ).start()

@@ -26,6 +26,8 @@ class WorkerSettings:
         checkpoint_interval_s: wall time between checkpoints on disk [s].
         threads: solver threads on the CPU; None for all cores.
         device: device whose kernels are loaded ahead.
+        log_format: "text" or "json".
+        log_level: least level of the lines it writes.
     """
 
     data_dir: Path
@@ -34,6 +36,8 @@ class WorkerSettings:
     checkpoint_interval_s: float
     threads: int | None
     device: str
+    log_format: str = "text"
+    log_level: str = "warning"
 
 
 @dataclass(frozen=True)

@@ -136,7 +136,13 @@ class WorkerPool:
             self._workers.remove(worker)
         if self._closing:
             return
-        LOG.info("worker %d (process %s): %s", worker.number, worker.pid, worker.cause_of_death[1])
+        LOG.info(
+            "worker %d (process %s): %s",
+            worker.number,
+            worker.pid,
+            worker.cause_of_death[1],
+            extra={"run": worker.run},
+        )
         self._on_lost(worker)
         if worker.run is not None:
             self.start_spares(SPARE_DELAY_S)

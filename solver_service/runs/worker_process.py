@@ -11,6 +11,8 @@ import threading
 from multiprocessing.connection import Connection
 
 from solver_service.errors import ServiceError
+from solver_service.logging_setup import set_up_logging
+from solver_service.runs.native_lines import give_stderr_to
 from solver_service.runs.worker_failure import failure_of
 from solver_service.runs.worker_messages import Failed, Ready, Report, Unfit, WorkerSettings
 
@@ -19,13 +21,21 @@ LOG = logging.getLogger(__name__)
 FAILED = 1
 
 
-def worker_main(settings: WorkerSettings, connection: Connection) -> None:
+def worker_main(settings: WorkerSettings, connection: Connection, errors: Connection) -> None:
     """Body of the process.
 
     Args:
         settings: what the worker is told.
         connection: its end of the pipe.
+        errors: the pipe for what libraries write to standard error.
     """
+    loops: list[RunLoop] = []  # none while it starts
+    set_up_logging(
+        settings.log_format,
+        settings.log_level,
+        lambda: {"run": loops[0].run} if loops else {},
+        give_stderr_to(errors),
+    )
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the service, which then tells its workers
     send_lock = threading.Lock()
 
@@ -49,6 +59,7 @@ def worker_main(settings: WorkerSettings, connection: Connection) -> None:
     gc.freeze()
     gc.disable()  # a collection on another thread can break a CUDA graph capture; the solver thread collects
     loop = RunLoop(settings, Inbox(connection), report)
+    loops.append(loop)
 
     def give_up(error: BaseException | None) -> None:
         """Say why, and end: after an error that nobody foresaw neither memory nor device can be trusted."""
@@ -60,6 +71,7 @@ def worker_main(settings: WorkerSettings, connection: Connection) -> None:
             os._exit(FAILED)
 
     threading.excepthook = lambda thread: give_up(thread.exc_value)
+    LOG.info("worker process %d is ready", os.getpid())
     report(Ready(os.getpid(), tuple(device_names())))
     try:
         loop.serve()
@@ -67,15 +79,20 @@ def worker_main(settings: WorkerSettings, connection: Connection) -> None:
         give_up(error)
 
 
-def start_worker(settings: WorkerSettings) -> tuple[multiprocessing.process.BaseProcess, Connection]:
+def start_worker(
+    settings: WorkerSettings,
+) -> tuple[multiprocessing.process.BaseProcess, Connection, Connection]:
     """Start a worker.
 
     Returns:
-        The process and this side's end of the pipe.
+        The process, this side's end of the pipe, and the end of the pipe for its errors.
     """
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
-    process = context.Process(target=worker_main, args=(settings, theirs), name="fev-worker", daemon=True)
+    errors, their_errors = context.Pipe(duplex=False)
+    arguments = (settings, theirs, their_errors)
+    process = context.Process(target=worker_main, args=arguments, name="fev-worker", daemon=True)
     process.start()
     theirs.close()
-    return process, ours
+    their_errors.close()
+    return process, ours, errors

@@ -12,11 +12,13 @@ from pydantic import BaseModel, Field
 
 from protocol import PROTOCOL_VERSION
 from solver_service.errors import AccessError, ServiceError
+from solver_service.logging_setup import tag_log
 from solver_service.runs import RunRegistry
 from solver_service.web.auth import Access, Gate
 from solver_service.web.error_codes import http_status, wire_code
 from solver_service.web.metrics import CONTENT_TYPE, metrics_text, unready_reason
 from solver_service.web.quotas import Quotas, owner_of
+from solver_service.web.request_log import RequestLog
 from solver_service.web.scopes import Scope
 from solver_service.web.stream import StreamConnection
 from solver_service.web.token_store import TokenStore
@@ -56,6 +58,7 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore, quotas: Qu
     connections: set[StreamConnection] = set()
     app.state.connections = connections
     app.state.accepts = False
+    app.add_middleware(RequestLog)
 
     def needs(scope: Scope) -> Any:
         def check(request: Request) -> Access:
@@ -66,6 +69,7 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore, quotas: Qu
                     "the Authorization header must carry 'Bearer' and a token that holds",
                     {"WWW-Authenticate": "Bearer"},
                 )
+            tag_log(token=access.token or "", run=request.path_params.get("run", ""))
             if access.scope < scope:
                 raise AccessError(f"this needs the scope {scope}; the token has the scope {access.scope}")
             return access

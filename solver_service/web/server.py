@@ -17,6 +17,7 @@ import uvicorn
 
 from protocol import limits
 from solver_service.errors import ServeError
+from solver_service.logging_setup import conceal, set_up_logging
 from solver_service.runs import RoomRules, RunRegistry
 from solver_service.web.app import create_app
 from solver_service.web.auth import Gate, load_token
@@ -47,6 +48,7 @@ def run_service(settings: ServiceSettings) -> None:
         StoreError: the data folder is in use or cannot be used.
         CaseError: an offered case cannot be read.
     """
+    set_up_logging(settings.log_format, settings.log_level)
     check_tls(settings)
     listener = _listen(settings.host, settings.port)
     try:
@@ -60,11 +62,15 @@ def run_service(settings: ServiceSettings) -> None:
             spare_workers=settings.spare_workers,
             restart_attempts=settings.restart_attempts,
             restart_within_s=settings.restart_within_s,
+            log_format=settings.log_format,
+            log_level=settings.log_level,
             room=RoomRules(settings.store_bytes, settings.reserve_bytes),
         )
         tokens = TokenStore(settings.data_dir)
         quotas = Quotas(settings.limits, tokens, registry)
-        gate = Gate(load_token(settings.token_path), settings.allowed_origins, tokens)
+        secret = load_token(settings.token_path)
+        conceal(secret)
+        gate = Gate(secret, settings.allowed_origins, tokens)
     except BaseException:
         listener.close()
         raise
@@ -107,7 +113,6 @@ class _Server(uvicorn.Server):
                 ws_ping_timeout=PING_TIMEOUT_S,
                 timeout_graceful_shutdown=GRACEFUL_SHUTDOWN_S,
                 lifespan="off",
-                access_log=False,
                 log_config=None,
             )
         )

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from solver_service.logging_setup import LEVELS
 from solver_service.web.settings import ServiceSettings
-from solver_service.web.token_limits import LARGEST
 
 ENVIRONMENT_PREFIX = "FEV_SERVE_"
 
@@ -112,7 +112,7 @@ class SettingKey:
 
 def _limit(name: str, meaning: str) -> SettingKey:
     """A limit of every token that says nothing itself."""
-    return SettingKey(name, "integer", meaning, f"--{name.replace('_', '-')}", 0, LARGEST)
+    return SettingKey(name, "integer", meaning, f"--{name.replace('_', '-')}", 0)
 
 
 KEYS: tuple[SettingKey, ...] = (
@@ -156,6 +156,22 @@ KEYS: tuple[SettingKey, ...] = (
     ),
     SettingKey("store_bytes", "integer", "budget of frames and checkpoints [bytes]", "--store-bytes", 1),
     SettingKey("reserve_bytes", "integer", "room on the disk that is left to others [bytes]", least=0),
+    SettingKey(
+        "log_format",
+        "text",
+        "form of the log lines on standard error",
+        "--log-format",
+        pattern="text|json",
+        allowed="text or json",
+    ),
+    SettingKey(
+        "log_level",
+        "text",
+        "least level of the log lines",
+        "--log-level",
+        pattern="|".join(LEVELS),
+        allowed=", ".join(LEVELS),
+    ),
     _limit("max_runs", "runs that a token may keep"),
     _limit("max_cells", "cells that the runs of a token may compute at the same time"),
     _limit("max_gpu_bytes", "GPU memory that the runs of a token may take [bytes]"),

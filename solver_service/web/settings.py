@@ -37,6 +37,8 @@ class ServiceSettings:
         restart_within_s: the time in which these attempts count [s].
         store_bytes: most bytes of frames and checkpoints; None for as much as the disk has.
         reserve_bytes: room on the disk that is left to others [bytes].
+        log_format: "text" or "json".
+        log_level: least level of the lines that are written.
         max_runs: runs that a token may keep; None for no limit, as with all that follow.
         max_cells: cells that the runs of a token may compute at the same time.
         max_gpu_bytes: GPU memory that the runs of a token may take [bytes].
@@ -64,6 +66,8 @@ class ServiceSettings:
     restart_within_s: float = 600.0
     store_bytes: int | None = None
     reserve_bytes: int = 256 << 20
+    log_format: str = "text"
+    log_level: str = "warning"
     max_runs: int | None = None
     max_cells: int | None = None
     max_gpu_bytes: int | None = None

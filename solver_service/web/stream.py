@@ -24,16 +24,15 @@ from protocol import (
     RunBranched,
     RunChanged,
     RunRemoved,
-    Seek,
     ServerMessage,
     ServerSession,
     SessionState,
-    Subscribe,
-    Unsubscribe,
     WaterBudget,
     Welcome,
+    operation,
 )
 from solver_service.errors import AccessError, ServiceError, StoreError
+from solver_service.logging_setup import log_context, tag_log
 from solver_service.runs import RunRegistry, Session
 from solver_service.web.auth import Access, Gate
 from solver_service.web.commands import carry_out
@@ -41,7 +40,7 @@ from solver_service.web.error_codes import wire_code
 from solver_service.web.frame_feed import FrameFeed
 from solver_service.web.outbox import Outbox
 from solver_service.web.quotas import Quotas
-from solver_service.web.scopes import check_scope
+from solver_service.web.scopes import COMMAND_SCOPES, Scope, check_scope
 from solver_service.web.version import SERVER_NAME, server_version
 
 LOG = logging.getLogger(__name__)
@@ -95,6 +94,7 @@ class StreamConnection:
         self._gate = gate
         self.access = access
         self._since = time.time()
+        self._bytes_sent = 0
         self._commands: asyncio.Queue[Command] = asyncio.Queue()
         self._busy_with: Command | None = None
         self._held: list[ServerMessage] = []
@@ -103,13 +103,14 @@ class StreamConnection:
 
     async def serve(self) -> None:
         """Talk until either side ends it."""
+        tag_log(session=self.name, token=(self.access and self.access.token) or "")
         try:
             async with asyncio.TaskGroup() as tasks:
                 tasks.create_task(self._send())
                 tasks.create_task(self._read())
                 tasks.create_task(self._work())
         except* (ConnectionEnded, WebSocketDisconnect):
-            LOG.info("session %s ended", self.name)
+            LOG.info("the session ended")
         finally:
             self.is_welcome = False
             self.registry.audience.remove(self)
@@ -136,6 +137,8 @@ class StreamConnection:
             "scope": None if self.access is None else str(self.access.scope),
             "run": self.feed.run,
             "since": self._since,
+            "bytes_sent": self._bytes_sent,
+            "credit": self.session.credit,
         }
 
     @property
@@ -225,22 +228,29 @@ class StreamConnection:
     async def _work(self) -> None:
         while True:
             command = await self._commands.get()
-            self._busy_with = command
-            try:
-                if self.access is None or not self._gate.still_holds(self.access):
-                    self.withdraw()
-                    continue
-                check_scope(command, self.access.scope)
-                # what has begun is carried to its end although the connection may end meanwhile
-                await self.registry.carry_through(carry_out(command, self, self.access))
-            except (ServiceError, ProtocolError) as error:
-                self.tell(Error(command.id, wire_code(error), str(error)[:2000]))
-            finally:
-                self._busy_with = None
-                held, self._held = self._held, []
-            for message in held:
-                if not (isinstance(message, RunBranched) and message.child.run == self.feed.run):
-                    self.tell(message)
+            with log_context(run=getattr(command, "run", "")):
+                await self._obey(command)
+
+    async def _obey(self, command: Command) -> None:
+        level = logging.DEBUG if COMMAND_SCOPES[type(command)] is Scope.VIEWER else logging.INFO
+        LOG.log(level, "%s", operation(command))
+        self._busy_with = command
+        try:
+            if self.access is None or not self._gate.still_holds(self.access):
+                self.withdraw()
+                return
+            check_scope(command, self.access.scope)
+            # what has begun is carried to its end although the connection may end meanwhile
+            await self.registry.carry_through(carry_out(command, self, self.access))
+        except (ServiceError, ProtocolError) as error:
+            LOG.info("%s is refused: %s", operation(command), error)
+            self.tell(Error(command.id, wire_code(error), str(error)[:2000]))
+        finally:
+            self._busy_with = None
+            held, self._held = self._held, []
+        for message in held:
+            if not (isinstance(message, RunBranched) and message.child.run == self.feed.run):
+                self.tell(message)
 
     async def _send(self) -> None:
         while True:
@@ -250,6 +260,7 @@ class StreamConnection:
             if packet is not None:
                 async with asyncio.timeout(SEND_TIMEOUT_S):
                     await self._websocket.send_bytes(packet)
+                self._bytes_sent += len(packet)
                 continue
             try:
                 frame = await self.feed.next()
@@ -279,8 +290,6 @@ class StreamConnection:
                 self.outbox.close(error.close_code, str(error))
                 await self._until_closed()
             return None
-        if isinstance(message, Subscribe | Seek | Unsubscribe):
-            LOG.debug("session %s: %r", self.name, message)
         return message
 
     async def _until_closed(self) -> None:
@@ -307,7 +316,8 @@ class StreamConnection:
                 devices=self.registry.pool.devices,
             )
         )
-        LOG.info("session %s: %s", self.name, hello.client or "unnamed client")
+        tag_log(token=(self.access and self.access.token) or "")
+        LOG.info("welcome %s", hello.client or "unnamed client")
         self.registry.audience.add(self)
         if hello.resume is not None and hello.resume.run in self.registry.tree:
             run = self.registry.tree.get(hello.resume.run)
