@@ -65,8 +65,8 @@ class Stage:
 def make_stage(ctx: moderngl.Context) -> Iterator[Callable[..., Stage]]:
     stages: list[Stage] = []
 
-    def make(heightfield: Heightfield, size: tuple[int, int] = (480, 300), **options: object) -> Stage:
-        renderer = Renderer(ctx, heightfield, **options)
+    def make(heightfield: Heightfield, size: tuple[int, int] = (480, 300)) -> Stage:
+        renderer = Renderer(ctx, heightfield)
         stages.append(Stage(renderer, ctx.simple_framebuffer(size), size))
         return stages[-1]
 

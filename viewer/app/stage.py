@@ -61,7 +61,7 @@ class Stage:
         self._make_context = make_context
         self._context: moderngl.Context | None = None
         self._renderer: Renderer | None = None
-        self._heightfield: Heightfield | None = None
+        self._ground: tuple[Heightfield, int] | None = None
         self.stats: FrameStats | None = None
         self.pictures = 0
 
@@ -104,11 +104,12 @@ class Stage:
             target.viewport = (0, 0, *size)
             target.clear(*EMPTY_COLOUR)
             return
-        if self._renderer is None or heightfield is not self._heightfield:
+        ground = (heightfield, heightfield.cover_revision)
+        if self._renderer is None or ground != self._ground:
             if self._renderer is not None:
                 self._renderer.release()
             self._renderer = Renderer(self.context, heightfield)
-            self._heightfield = heightfield
+            self._ground = ground
         order = self._scene.take_picture_order()
         if order is not None:
             self._write(order, inputs, size)  # first: picking needs the picture on the screen to be the last
@@ -133,7 +134,7 @@ class Stage:
         if self._renderer is not None:
             self._renderer.release()
         self._renderer = None
-        self._heightfield = None
+        self._ground = None
         self._context = None
 
     def _write(self, order: SavePicture, inputs: FrameInputs, shown: tuple[int, int]) -> None:

@@ -9,6 +9,7 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
+from viewer.lod.block_tiling import Border
 from viewer.units import METRIC, Units
 from viewer.world.camera import Camera
 from viewer.world.water_scales import ClassScale, WaterColour
@@ -154,6 +155,10 @@ class RenderOptions:
     """The same for partially wet blocks; 0 draws every grid vertex, as an exact shore asks."""
     full_mesh: bool = False
     """Draw every vertex of the terrain: the oracle of the tests."""
+    block_size: int = 33
+    """Vertices along a block's side: 17, 33 or 65."""
+    border: Border = Border.RAGGED
+    """What is done with rows and columns of the map that fill no whole block."""
     snap_edges: bool = True
     """Fit block edges to coarser neighbours; without it cracks open (for tests and demonstrations)."""
     cull: bool = True

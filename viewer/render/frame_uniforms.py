@@ -7,6 +7,7 @@ import math
 import moderngl
 import numpy as np
 
+from viewer.lod import BlockTiling
 from viewer.render.frame_inputs import FrameInputs
 from viewer.world.coordinates import WorldFrame
 
@@ -26,18 +27,18 @@ def sun_direction(azimuth_deg: float, elevation_deg: float) -> tuple[float, floa
 class FrameUniforms:
     """Writes the uniform block of a picture."""
 
-    def __init__(self, ctx: moderngl.Context, shape: tuple[int, int], stride: int, dx: float) -> None:
+    def __init__(self, ctx: moderngl.Context, tiling: BlockTiling, dx: float) -> None:
         """Allocate.
 
         Args:
             ctx: the OpenGL context.
-            shape: rows and columns of the terrain.
-            stride: cells along a block.
+            tiling: the blocks.
             dx: cell size [m].
         """
-        self._grid = (shape[1], shape[0], stride, dx)
-        self._map_size = max(shape) * dx
-        self._values = np.zeros((10, 4), dtype="<f4")
+        self._grid = (tiling.ncols, tiling.nrows, tiling.stride, dx)
+        self._last = (tiling.drawn_cols - 1, tiling.drawn_rows - 1)
+        self._map_size = max(tiling.nrows, tiling.ncols) * dx
+        self._values = np.zeros((11, 4), dtype="<f4")
         self._buffer = ctx.buffer(reserve=self._values.nbytes)
 
     def write(
@@ -67,6 +68,7 @@ class FrameUniforms:
         values[7] = self._grid
         values[8] = (frame.exaggeration, frame.z_ref, options.contour_interval, skirt_foot)
         values[9] = (*size, options.depth_shown, float(options.show_blocks))
+        values[10, :2] = self._last
         self._buffer.write(values)
         self._buffer.bind_to_uniform_block(0)
 

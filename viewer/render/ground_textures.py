@@ -18,8 +18,6 @@ from viewer.world.heightfield import Heightfield, Rect
 __all__ = ["GroundTextures", "height_texture"]
 
 _BAKED_SIDE_MAX = 4096
-_OUTSIDE_SHARE = 0.02
-"""If more of the map than this is exactly as high as its highest cell, that plateau is no data."""
 _SAMPLERS = ("height", "ground_colour", "edit_mask", "detail")
 _DETAIL_SIDE = 512
 _DETAIL_SEED = 33
@@ -47,26 +45,21 @@ def write_rect(texture: moderngl.Texture, values: npt.NDArray[np.generic], rect:
 class GroundTextures:
     """Textures that follow the heightfield, the light and the edits."""
 
-    def __init__(
-        self, ctx: moderngl.Context, heightfield: Heightfield, imagery: npt.NDArray[np.uint8] | None
-    ) -> None:
+    def __init__(self, ctx: moderngl.Context, heightfield: Heightfield) -> None:
         """Upload and bake.
 
         Args:
             ctx: the OpenGL context.
-            heightfield: the ground.
-            imagery: optional picture of the ground, shape [rows, cols, 3], row 0 in the south, covering the
-                grid.
-
-        Raises:
-            TerrainDataError: if the imagery is not 8-bit RGB.
+            heightfield: the ground, with its imagery and the cells without data as they are now.
         """
         self._ctx = ctx
         self._heightfield = heightfield
         nrows, ncols = heightfield.z_b.shape
-        self.height = height_texture(ctx, heightfield.z_b)
+        self.height = height_texture(ctx, heightfield.drawn)
         self._revision = heightfield.revision
+        imagery, outside = heightfield.imagery, heightfield.outside
         self._imagery = None if imagery is None else _imagery_texture(ctx, imagery)
+        self._outside = None if outside is None else _mask_texture(ctx, outside)
         self.mask = ctx.texture((ncols, nrows), 1, np.full((nrows, ncols), 128, dtype=np.uint8), alignment=1)
         self.mask.repeat_x = self.mask.repeat_y = False
         self._edits: EditOverlay | None = None
@@ -91,7 +84,7 @@ class GroundTextures:
         self._program = build_program(ctx, "full_screen.vert", "bake_ground.frag")
         self._array = ctx.vertex_array(self._program, [])
         self._baked_for: tuple[object, ...] | None = None
-        self._elevation_range, self._outside_level = _tinted_range(heightfield.z_b)
+        self._elevation_range = _tinted_range(heightfield)
 
     def follow(
         self, sun: tuple[float, float, float], show_imagery: bool, edits: EditOverlay | None
@@ -99,7 +92,7 @@ class GroundTextures:
         """Bring all textures up to date, and return the rectangle of heights that changed."""
         dirty = self._heightfield.changed_since(self._revision)
         if dirty is not None:
-            write_rect(self.height, self._heightfield.z_b, dirty)
+            write_rect(self.height, self._heightfield.drawn, dirty)
             self._revision = self._heightfield.revision
         baked_for = (sun, show_imagery)
         if self._baked_for != baked_for:
@@ -122,7 +115,7 @@ class GroundTextures:
 
     def release(self) -> None:
         """Give the memory back."""
-        textures = (self.colour, self.mask, self.height, self._detail, self._imagery)
+        textures = (self.colour, self.mask, self.height, self._detail, self._imagery, self._outside)
         followers = (self.difference, self.colouring)
         for thing in (self._array, self._program, self._target, *followers, *textures):
             if thing is not None:
@@ -146,12 +139,15 @@ class GroundTextures:
             dx=self._heightfield.grid.dx,
             sun=sun,
             elevation_range=self._elevation_range,
-            outside_level=self._outside_level,
+            outside=2,
+            has_outside=int(self._outside is not None),
             window=(x0 / width, y0 / height, (x1 - x0) / width, (y1 - y0) / height),
         )
         self.height.use(0)
         if self._imagery is not None:
             self._imagery.use(1)
+        if self._outside is not None:
+            self._outside.use(2)
         self._target.use()
         self._target.viewport = (x0, y0, x1 - x0, y1 - y0)
         self._ctx.enable_only(moderngl.NOTHING)
@@ -181,14 +177,17 @@ class GroundTextures:
 
 
 def _imagery_texture(ctx: moderngl.Context, imagery: npt.NDArray[np.uint8]) -> moderngl.Texture:
-    if imagery.ndim != 3 or imagery.shape[2] != 3 or imagery.dtype != np.uint8:
-        raise TerrainDataError(
-            f"imagery has shape {imagery.shape} and type {imagery.dtype}, [rows, cols, 3] uint8 is needed"
-        )
     texture = ctx.texture((imagery.shape[1], imagery.shape[0]), 3, np.ascontiguousarray(imagery), alignment=1)
     texture.repeat_x = texture.repeat_y = False
     texture.build_mipmaps()
     texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+    return texture
+
+
+def _mask_texture(ctx: moderngl.Context, mask: npt.NDArray[np.bool_]) -> moderngl.Texture:
+    pixels = np.where(mask, 255, 0).astype(np.uint8)
+    texture = ctx.texture((mask.shape[1], mask.shape[0]), 1, pixels, alignment=1)
+    texture.repeat_x = texture.repeat_y = False
     return texture
 
 
@@ -207,11 +206,8 @@ def _detail_texture(ctx: moderngl.Context) -> moderngl.Texture:
     return texture
 
 
-def _tinted_range(z: npt.NDArray[np.float32]) -> tuple[tuple[float, float], float]:
-    """Lowest and highest ground to tint, and the level of the plateau that stands for no data."""
-    top = float(z.max())
-    inside = z[z < top]
-    if inside.size and inside.size < (1.0 - _OUTSIDE_SHARE) * z.size:
-        low, high = np.percentile(inside[:: max(1, inside.size // 200_000)], (0.5, 99.5))
-        return (float(low), float(high)), top
-    return (float(z.min()), top), top + 1e6
+def _tinted_range(field: Heightfield) -> tuple[float, float]:
+    """Lowest and highest ground to tint [m]."""
+    z = field.z_b if field.outside is None else field.z_b[~field.outside]
+    low, high = np.percentile(z.ravel()[:: max(1, z.size // 200_000)], (0.5, 99.5))
+    return float(low), float(high)

@@ -12,23 +12,19 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from viewer.lod import BlockTiling, Selection
-from viewer.render.block_mesh import BlockIndices
+from viewer.lod import Selection
+from viewer.render.block_passes import BlockPasses
 from viewer.render.context import check_context
-from viewer.render.frame_inputs import FrameInputs, FrameStats
-from viewer.render.frame_uniforms import FrameUniforms, sun_direction
+from viewer.render.frame_inputs import FrameInputs, FrameStats, RenderOptions
+from viewer.render.frame_uniforms import sun_direction
 from viewer.render.ground_textures import GroundTextures
 from viewer.render.hud_pass import HudPass
 from viewer.render.line_pass import LinePass
 from viewer.render.picking import Unprojection
 from viewer.render.present_pass import PresentPass
 from viewer.render.render_target import RenderTarget
-from viewer.render.skirt_pass import SkirtPass
 from viewer.render.sky import SkyPass
-from viewer.render.terrain_lod import TerrainLod
-from viewer.render.terrain_pass import TerrainPass
-from viewer.render.water_pass import WaterPass
-from viewer.render.water_textures import WaterSlot, WaterTextures, combined_states
+from viewer.render.water_textures import WaterSlot, combined_states
 from viewer.world.camera import Camera
 from viewer.world.coordinates import Point, WorldFrame
 from viewer.world.heightfield import Heightfield
@@ -46,44 +42,27 @@ class Renderer:
     `heightfield.set`; the renderer notices.
     """
 
-    def __init__(
-        self,
-        ctx: moderngl.Context,
-        heightfield: Heightfield,
-        imagery: npt.NDArray[np.uint8] | None = None,
-        block_size: int = 33,
-    ) -> None:
+    def __init__(self, ctx: moderngl.Context, heightfield: Heightfield) -> None:
         """Upload the terrain and compile the shaders.
 
         Args:
             ctx: an OpenGL 4.1 core context.
-            heightfield: the ground; watched for changes.
-            imagery: optional picture of the ground, [rows, cols, 3] uint8, row 0 in the south, covering the
-                grid.
-            block_size: vertices along a block's side: 17, 33 or 65.
+            heightfield: the ground; its bed is watched for changes.
 
         Raises:
             ContextError: if the context is older than OpenGL 4.1.
             ShaderError: if a shader does not compile.
-            TerrainDataError: if the imagery is not 8-bit RGB.
         """
         self._ctx = check_context(ctx)
         self._heightfield = heightfield
-        shape = heightfield.z_b.shape
-        tiling = BlockTiling(shape[0], shape[1], block_size)
-        self._lod = TerrainLod(heightfield, tiling)
-        self._ground = GroundTextures(ctx, heightfield, imagery)
-        self._indices = BlockIndices(ctx, block_size, tiling.level_count)
-        self._uniforms = FrameUniforms(ctx, (shape[0], shape[1]), tiling.stride, heightfield.grid.dx)
-        self._terrain = TerrainPass(ctx, tiling, self._indices)
-        self._water_textures = WaterTextures(ctx, tiling, heightfield.grid.dx, heightfield.z_b)
-        self._water = WaterPass(ctx, tiling, self._indices)
-        self._skirt = SkirtPass(ctx, tiling)
+        self._ground = GroundTextures(ctx, heightfield)
+        self._blocks = BlockPasses(ctx, heightfield, RenderOptions.block_size, RenderOptions.border)
         self._lines = LinePass(ctx, heightfield)
         self._sky = SkyPass(ctx)
         self._present = PresentPass(ctx)
         self._hud = HudPass(ctx)
-        self._skirt_foot = heightfield.z_min - _SKIRT_SHARE * max(shape) * heightfield.grid.dx
+        map_size = max(heightfield.z_b.shape) * heightfield.grid.dx
+        self._skirt_foot = heightfield.z_min - _SKIRT_SHARE * map_size
         self._target: RenderTarget | None = None
         self._picture_size = (1, 1)
         self._unprojection: Unprojection | None = None
@@ -104,22 +83,23 @@ class Renderer:
         """
         begun = perf_counter()
         options = inputs.options
+        blocks = self._blocks_of(options)
         scene = self._scene_target(_scaled(size, options.render_scale), options.samples)
         frame = self._heightfield.frame.exaggerated(options.exaggeration)
         sun = sun_direction(options.light_azimuth_deg, options.light_elevation_deg)
         dirty = self._ground.follow(sun, options.show_imagery, inputs.edits)
         if dirty is not None:
-            self._lod.refresh(dirty)
+            blocks.lod.refresh(dirty)
         self._ground.difference.follow(inputs.difference)
         self._ground.colouring.follow(inputs.colouring)
-        self._lod.follow_edits(inputs.edits)
+        blocks.lod.follow_edits(inputs.edits)
         self._sky.follow(sun)
         water = inputs.water if options.show_water else None
-        slots = None if water is None else self._water_textures.follow(water)
+        slots = None if water is None else blocks.water_textures.follow(water)
 
         selecting = perf_counter()
         states, depth_max = (None, 0.0) if slots is None else combined_states(*slots)
-        selection = self._lod.select(inputs, frame, scene.size, states, depth_max)
+        selection = blocks.lod.select(inputs, frame, scene.size, states, depth_max)
         selected = perf_counter()
 
         near, far = self._clip_planes(inputs.camera, frame, size, selection)
@@ -128,7 +108,7 @@ class Renderer:
         self._unprojection = Unprojection(
             np.asarray(np.linalg.inv(projection @ view), dtype=np.float64), scene.size, frame
         )
-        self._uniforms.write(inputs, frame, projection @ view, scene.size, self._skirt_foot)
+        blocks.uniforms.write(inputs, frame, projection @ view, scene.size, self._skirt_foot)
         draws = self._draw_scene(scene, inputs, selection, slots, projection, view)
         scene.resolve()
         self._picture_size = size
@@ -193,8 +173,7 @@ class Renderer:
 
     def release(self) -> None:
         """Give all graphics memory back."""
-        passes = (self._terrain, self._water, self._skirt, self._lines, self._sky, self._present, self._hud)
-        for thing in (*passes, self._water_textures, self._ground, self._indices, self._uniforms):
+        for thing in (self._blocks, self._lines, self._sky, self._present, self._hud, self._ground):
             thing.release()
         if self._target is not None:
             self._target.release()
@@ -209,7 +188,7 @@ class Renderer:
         projection: npt.NDArray[np.float64],
         view: npt.NDArray[np.float64],
     ) -> int:
-        options = inputs.options
+        options, blocks = inputs.options, self._blocks
         scene.framebuffer.use()
         scene.framebuffer.viewport = (0, 0, *scene.size)
         scene.framebuffer.clear(*options.background, 1.0)
@@ -217,13 +196,15 @@ class Renderer:
         # Front to back: water hides ground, ground hides sky, and what is hidden is not shaded.
         if slots is not None and inputs.water is not None:
             alpha = inputs.water.alpha
-            draws += self._water.draw(self._ground, slots, alpha, self._sky.texture, selection.water, options)
+            draws += blocks.water.draw(
+                self._ground, slots, alpha, self._sky.texture, selection.water, options
+            )
             if options.show_skirt:
-                draws += self._skirt.draw(self._ground, selection, slots, alpha)
+                draws += blocks.skirt.draw(self._ground, selection, slots, alpha)
         if options.show_terrain:
-            draws += self._terrain.draw(self._ground, selection.terrain, options)
+            draws += blocks.terrain.draw(self._ground, selection.terrain, options)
         if options.show_skirt:
-            draws += self._skirt.draw(self._ground, selection)
+            draws += blocks.skirt.draw(self._ground, selection)
         if options.show_sky:
             rotation = view.copy()
             rotation[:3, 3] = 0.0
@@ -232,6 +213,14 @@ class Renderer:
             alpha = 0.0 if inputs.water is None else inputs.water.alpha
             draws += self._lines.draw(self._ground, inputs.edits.lines, slots, alpha, options.render_scale)
         return draws
+
+    def _blocks_of(self, options: RenderOptions) -> BlockPasses:
+        """The passes for the blocks asked for, made anew when they are others than before."""
+        tiling = self._blocks.tiling
+        if (tiling.block_size, tiling.border) != (options.block_size, options.border):
+            self._blocks.release()
+            self._blocks = BlockPasses(self._ctx, self._heightfield, options.block_size, options.border)
+        return self._blocks
 
     def _scene_target(self, size: tuple[int, int], samples: int) -> RenderTarget:
         target = self._target

@@ -30,9 +30,9 @@ class TerrainLod:
         """Compute all errors."""
         self._heightfield = heightfield
         self.tiling = tiling
-        self._bounds = block_bounds(heightfield.z_b, tiling)
-        errors = block_errors(heightfield.z_b, tiling)
-        self._table = SwitchTable(errors, edge_errors(heightfield.z_b, tiling, errors))
+        self._bounds = block_bounds(heightfield.drawn, tiling)
+        errors = block_errors(heightfield.drawn, tiling)
+        self._table = SwitchTable(errors, edge_errors(heightfield.drawn, tiling, errors))
         self._selector = BlockSelector(tiling, heightfield.grid.dx, self._table, self._bounds)
         self._edited: npt.NDArray[np.bool_] | None = None
         self._edits: EditOverlay | None = None
@@ -48,7 +48,7 @@ class TerrainLod:
         read = _grown(redone, 1, tiling)
         row0, row1 = int(tiling.row_start[read[0]]), int(tiling.row_end[read[2] - 1]) + 1
         col0, col1 = int(tiling.col_start[read[1]]), int(tiling.col_end[read[3] - 1]) + 1
-        z = tiling.fitted(self._heightfield.z_b)[row0:row1, col0:col1]
+        z = tiling.fitted(self._heightfield.drawn)[row0:row1, col0:col1]
         part = BlockTiling(z.shape[0], z.shape[1], tiling.block_size)
         errors, bounds = block_errors(z, part), block_bounds(z, part)
         charges = edge_errors(z, part, errors)
@@ -97,6 +97,7 @@ class TerrainLod:
             cull_covered_terrain=options.cull_covered_terrain,
             classify_water=options.classify_water,
             full_mesh=options.full_mesh,
+            quadtree=options.quadtree,
         )
 
 

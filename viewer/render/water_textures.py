@@ -176,12 +176,14 @@ class WaterTextures:
         tiling = self._tiling
         if frame.states is None or tiling.block_size != WIRE_BLOCK_SIZE:
             return classify_blocks(frame.h, tiling).ravel()
-        if frame.states.shape != (tiling.block_rows, tiling.block_cols):
+        # The wire's blocks are ragged; trimmed ones are the first of them.
+        blocks = BlockTiling(tiling.nrows, tiling.ncols, WIRE_BLOCK_SIZE)
+        if frame.states.shape != (blocks.block_rows, blocks.block_cols):
             raise TerrainDataError(
                 f"block states have shape {frame.states.shape}, "
-                f"the terrain asks for {(tiling.block_rows, tiling.block_cols)}"
+                f"the terrain asks for {(blocks.block_rows, blocks.block_cols)}"
             )
-        return frame.states.astype(np.uint8, copy=True).ravel()
+        return frame.states[: tiling.block_rows, : tiling.block_cols].astype(np.uint8, copy=True).ravel()
 
     def _stage(self, h: npt.NDArray[np.float32], states: npt.NDArray[np.uint8]) -> None:
         """Upload depths, one run of blocks a block row: those with water and those that held some before."""
@@ -194,8 +196,8 @@ class WaterTextures:
             rect = (
                 int(tiling.row_start[row]),
                 int(tiling.col_start[cols[0]]),
-                int(tiling.row_end[row]) + 1,
-                int(tiling.col_end[cols[-1]]) + 1,
+                min(int(tiling.row_end[row]) + 1, tiling.nrows),
+                min(int(tiling.col_end[cols[-1]]) + 1, tiling.ncols),
             )
             write_rect(self._staging, h, rect)
         self._staged = has_water

@@ -1,4 +1,4 @@
-"""The ground on the CPU: one elevation per cell centre, sampled between centres.
+"""The ground on the CPU: one elevation per cell centre, sampled between centres, and what lies on it.
 
 The array is [row, col] with row 0 in the south; z is relative to the case datum. A revision number and the
 rectangles changed since a revision tell the textures and the level-of-detail errors what to refresh.
@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from protocol import GridGeometry
 from viewer.errors import TerrainDataError
+from viewer.world.apron import continued
 from viewer.world.coordinates import WorldFrame
 
 __all__ = ["Heightfield", "Rect", "union_rect"]
@@ -36,26 +37,64 @@ def union_rect(first: Rect | None, second: Rect | None) -> Rect | None:
 
 
 class Heightfield:
-    """The ground as it is drawn now: the bed of the run with the user's edits on it."""
+    """The ground as it is now: the bed of the run with the user's edits on it.
 
-    def __init__(self, grid: GridGeometry, z_b: npt.ArrayLike) -> None:
+    Attributes:
+        grid: the geometry of the raster.
+        z_b: the bed [m, datum-relative].
+        drawn: the bed as pictures show it: outside of the data the ground is continued, not walled.
+        outside: cells without data; None where there are none.
+        imagery: a picture of the ground that covers the grid, [rows, cols, 3] uint8, row 0 in the south.
+        cover_revision: counts the changes of `outside` and `imagery`.
+        revision: counts the changes of the bed.
+        z_min: lowest ground drawn so far [m].
+        z_max: highest ground drawn so far [m].
+        frame: the world frame of pictures.
+    """
+
+    def __init__(
+        self, grid: GridGeometry, z_b: npt.ArrayLike, outside: npt.NDArray[np.bool_] | None = None
+    ) -> None:
         """Take the first bed.
 
         Args:
             grid: the geometry of the raster.
             z_b: bed elevation [m, datum-relative], shape [nrows, ncols], finite.
+            outside: cells without data, shape [nrows, ncols]; None for none.
 
         Raises:
-            TerrainDataError: if the shape is not the grid's or a value is not finite.
+            TerrainDataError: if a shape is not the grid's or a value is not finite.
         """
         self.grid = grid
         self.z_b = self._checked(z_b)
         self._is_own = False
         self.revision = 0
         self._changes: list[tuple[int, Rect]] = []
-        self.z_min = float(self.z_b.min())
-        self.z_max = float(self.z_b.max())
+        self.drawn = self.z_b
+        self.outside: npt.NDArray[np.bool_] | None = None
+        self.imagery: npt.NDArray[np.uint8] | None = None
+        self.cover_revision = 0
+        self.z_min = self.z_max = 0.0
+        self._lay_apron(outside)
         self.frame = WorldFrame.of_grid(grid, z_ref=self.z_min)
+
+    def cover(self, outside: npt.NDArray[np.bool_] | None, imagery: npt.NDArray[np.uint8] | None) -> None:
+        """Say which cells hold no data, and what lies on the ground.
+
+        Args:
+            outside: cells without data, shape [nrows, ncols]; None for none.
+            imagery: picture that covers the grid, [rows, cols, 3] uint8, row 0 in the south; None for none.
+
+        Raises:
+            TerrainDataError: if a shape or type does not fit.
+        """
+        if imagery is not None and (imagery.ndim != 3 or imagery.shape[2] != 3 or imagery.dtype != np.uint8):
+            raise TerrainDataError(
+                f"imagery has shape {imagery.shape} and type {imagery.dtype}, [rows, cols, 3] uint8 is needed"
+            )
+        self._lay_apron(outside)
+        self.imagery = imagery
+        self.cover_revision += 1
 
     def set(self, z_b: npt.ArrayLike, dirty: Rect | None = None) -> None:
         """Replace the bed.
@@ -89,7 +128,12 @@ class Heightfield:
         self.revision += 1
         self._changes.append((self.revision, rect))
         del self._changes[:-_HISTORY_LENGTH]
-        changed = self.z_b[rect[0] : rect[2], rect[1] : rect[3]]
+        window = (slice(rect[0], rect[2]), slice(rect[1], rect[3]))
+        if self.outside is None:
+            self.drawn = self.z_b
+        else:
+            self.drawn[window] = np.where(self.outside[window], self.drawn[window], self.z_b[window])
+        changed = self.drawn[window]
         self.z_min = min(self.z_min, float(changed.min()))
         self.z_max = max(self.z_max, float(changed.max()))
 
@@ -106,7 +150,7 @@ class Heightfield:
         return rect
 
     def sample(self, x: Any, y: Any) -> Any:
-        """Ground elevation [m, datum-relative], bilinear between cell centres, clamped at the border.
+        """Ground drawn [m, datum-relative], bilinear between cell centres, clamped at the border.
 
         Args:
             x: easting [m], scalar or array.
@@ -121,7 +165,7 @@ class Heightfield:
         col1 = np.minimum(col0 + 1, ncols - 1)
         row1 = np.minimum(row0 + 1, nrows - 1)
         s, t = col - col0, row - row0
-        z = self.z_b
+        z = self.drawn
         south = z[row0, col0] * (1.0 - s) + z[row0, col1] * s
         north = z[row1, col0] * (1.0 - s) + z[row1, col1] * s
         value = south * (1.0 - t) + north * t
@@ -131,6 +175,17 @@ class Heightfield:
         """Height of the ground in the world [m] above a world position (scalars or arrays)."""
         frame = self.frame if frame is None else frame
         return frame.height(self.sample(frame.x_centre + x_world, frame.y_centre - z_world))
+
+    def _lay_apron(self, outside: npt.NDArray[np.bool_] | None) -> None:
+        if outside is not None and (outside.shape != self.z_b.shape or outside.dtype != np.bool_):
+            raise TerrainDataError(
+                f"the cells without data have shape {outside.shape} and type {outside.dtype}, "
+                f"{self.z_b.shape} bool is needed"
+            )
+        self.outside = outside if outside is not None and outside.any() and not outside.all() else None
+        self.drawn = self.z_b if self.outside is None else continued(self.z_b, self.outside)
+        self.z_min = float(self.drawn.min())
+        self.z_max = float(self.drawn.max())
 
     def _checked(self, z_b: npt.ArrayLike) -> npt.NDArray[np.float32]:
         array = np.ascontiguousarray(z_b, dtype=np.float32)

@@ -56,7 +56,7 @@ def map_step(shape: tuple[int, ...]) -> int:
 def relief_map(heightfield: Heightfield) -> npt.NDArray[np.uint8]:
     """Shaded ground, shape [rows, cols, 3]."""
     step = map_step(heightfield.z_b.shape)
-    z = heightfield.z_b[step // 2 :: step, step // 2 :: step].astype(np.float64)
+    z = heightfield.drawn[step // 2 :: step, step // 2 :: step].astype(np.float64)
     slope_y, slope_x = np.gradient(z, step * heightfield.grid.dx) if min(z.shape) > 1 else (0.0 * z, 0.0 * z)
     steepest = max(float(np.quantile(np.hypot(slope_x, slope_y), 0.98)), 1e-6)
     scale = 0.8 / steepest  # flat and alpine ground alike use the whole range of shades

@@ -14,7 +14,7 @@ SUN = sun_direction(315.0, 42.0)
 
 @pytest.fixture
 def ground(ctx: moderngl.Context, hilly: Heightfield):
-    textures = GroundTextures(ctx, hilly, None)
+    textures = GroundTextures(ctx, hilly)
     textures.follow(SUN, True, None)
     yield textures
     ctx.detect_framebuffer(0).use()
@@ -53,7 +53,7 @@ def test_light_is_baked_anew_around_an_edit_as_if_from_the_start(
     edited = np.minimum(edited, hilly.z_max)
     hilly.set(edited, (50, 70, 60, 90))
     ground.follow(SUN, True, None)
-    fresh = GroundTextures(ctx, hilly, None)
+    fresh = GroundTextures(ctx, hilly)
     fresh.follow(SUN, True, None)
 
     assert (np.abs(colours(ground) - before) > 3).any()
@@ -63,7 +63,7 @@ def test_light_is_baked_anew_around_an_edit_as_if_from_the_start(
 
 
 def test_slopes_toward_the_sun_are_brighter(ctx: moderngl.Context, hilly: Heightfield) -> None:
-    ground = GroundTextures(ctx, hilly, None)
+    ground = GroundTextures(ctx, hilly)
     ground.follow(sun_direction(90.0, 30.0), True, None)
     light = colours(ground)[..., :3].sum(axis=2)[::2, ::2]
     rises_east = np.gradient(hilly.z_b, axis=1)
@@ -89,9 +89,23 @@ def test_a_mask_of_another_size_is_refused(ground: GroundTextures) -> None:
         ground.follow(SUN, True, EditOverlay(1, np.zeros((3, 3), dtype=np.int8)))
 
 
-@pytest.mark.parametrize("imagery", [np.zeros((4, 4), np.uint8), np.zeros((4, 4, 3), np.float32)])
-def test_imagery_that_is_not_8_bit_rgb_is_refused(
-    ctx: moderngl.Context, hilly: Heightfield, imagery: np.ndarray
+def test_ground_without_data_is_one_grey_whatever_the_light(
+    ctx: moderngl.Context, hilly: Heightfield
 ) -> None:
-    with pytest.raises(TerrainDataError, match="imagery"):
-        GroundTextures(ctx, hilly, imagery)
+    outside = np.zeros(hilly.z_b.shape, np.bool_)
+    outside[:, :100] = True
+    hilly.cover(outside, None)
+    ground = GroundTextures(ctx, hilly)
+    pictures = []
+    for sun in (SUN, (0.9, 0.1, 0.42)):
+        ground.follow(sun, True, None)
+        rows, cols = ground.colour.height, ground.colour.width
+        baked = np.frombuffer(ground.colour.read(alignment=1), np.uint8).reshape(rows, cols, 4)
+        pictures.append(baked)
+        left = baked[:, : 98 * cols // outside.shape[1]]
+        assert (left == left[0, 0]).all()
+        assert left[0, 0, 3] == 0
+        assert np.ptp(baked[:, 102 * cols // outside.shape[1] :, 0]) > 40
+    assert (pictures[0] != pictures[1]).any()
+    ctx.detect_framebuffer(0).use()
+    ground.release()

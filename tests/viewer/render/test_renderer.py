@@ -58,10 +58,11 @@ def screen_errors(stage, field: Heightfield, camera: Camera) -> np.ndarray:
 def test_no_crack_shows_between_blocks_of_any_levels(
     hilly: Heightfield, make_stage: Callable, block_size: int
 ) -> None:
-    stage = make_stage(hilly, block_size=block_size)
+    stage = make_stage(hilly)
     for camera in INSIDE:
         for tau in (2.0, 8.0, 30.0):
-            picture = stage.draw(FrameInputs(camera, options=RenderOptions(tau_px=tau, **BARE)))
+            options = RenderOptions(tau_px=tau, block_size=block_size, **BARE)
+            picture = stage.draw(FrameInputs(camera, options=options))
             assert magenta_pixels(picture) == 0
 
 
@@ -293,7 +294,8 @@ def test_a_picture_may_change_its_size(
 def test_imagery_is_laid_north_side_up(hilly: Heightfield, make_stage: Callable) -> None:
     imagery = np.zeros((64, 64, 3), dtype=np.uint8)
     imagery[:32, :, 0], imagery[32:, :, 2] = 220, 220  # red south, blue north
-    stage = make_stage(hilly, imagery=imagery)
+    hilly.cover(None, imagery)
+    stage = make_stage(hilly)
     picture = stage.draw(
         FrameInputs(Camera((0.0, 0.0, 0.0), 1500.0, 0.0, math.pi / 2), options=RenderOptions(**BARE))
     )

@@ -33,7 +33,8 @@ def test_shallow_water_shows_the_ground_and_deep_water_hides_it(
     stripes = np.zeros((64, 64, 3), dtype=np.uint8)
     stripes[:, ::4], stripes[:, 1::4] = 240, 240
     field = make_heightfield(129, 129, height=0.0001)
-    stage = make_stage(field, imagery=stripes)
+    field.cover(None, stripes)
+    stage = make_stage(field)
     contrast = [flood(stage, field, depth, 70.0)[..., 1].std() for depth in (0.05, 0.3, 1.0, 8.0)]
 
     assert contrast == sorted(contrast, reverse=True)

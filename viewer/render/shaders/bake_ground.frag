@@ -8,9 +8,12 @@ uniform vec2 cells;            // columns, rows
 uniform float dx;              // [m]
 uniform vec3 sun;              // unit vector to the sun, world axes
 uniform vec2 elevation_range;  // lowest and highest ground that is tinted [m]
-uniform float outside_level;   // ground exactly as high as this lies outside of the data
+uniform sampler2D outside;     // 1 in cells without data
+uniform int has_outside;
 uniform vec4 window;           // part of the texture being baked: origin and size, 0 to 1
 out vec4 colour;
+
+const vec3 NO_DATA = vec3(0.55, 0.56, 0.57);
 
 // Hypsometric tints of the ground, low to high.
 const int TINTS = 7;
@@ -108,10 +111,8 @@ void main() {
     }
     float sky = clamp(0.92 + 0.55 * open, 0.45, 1.2);
     float direct = max(dot(normal, sun), 0.0) * sunlight(uv, z);
-    float outside = smoothstep(outside_level - 3.0, outside_level, z);
-    albedo = mix(albedo, vec3(0.58, 0.58, 0.57), outside);
-    direct = mix(direct, sun.y, outside);
-    sky = mix(max(sky, 0.6 * step(1e-3, outside)), 1.0, outside);
     vec3 light = direct * vec3(1.06, 0.99, 0.88) * 0.98 + sky * (0.62 + 0.38 * normal.y) * vec3(0.36, 0.41, 0.50);
-    colour = vec4(albedo * light, has_imagery != 0 ? 0.0 : 1.0 - outside);
+    float data = has_outside != 0 ? 1.0 - texture(outside, uv).r : 1.0;
+    // Level, unlit grey: nobody is to take it for ground.
+    colour = vec4(mix(NO_DATA, albedo * light, data), data * (has_imagery != 0 ? 0.5 : 1.0));
 }

@@ -13,16 +13,16 @@ flat out vec3 normal;
 
 void main() {
     int stride = int(grid.z);
-    ivec2 last = ivec2(grid.xy) - 1;
+    ivec2 last = ivec2(blocks.xy);
     int along = ((gl_VertexID >> 1) >> in_side.y) << in_side.y;
     ivec2 cell = min(ivec2(in_block) * stride + (in_side.x < 2u ? ivec2(0, along) : ivec2(along, 0)), last);
     if (in_side.x == 1u) cell.x = last.x;
     if (in_side.x == 3u) cell.y = last.y;
-    float ground = texelFetch(height, cell, 0).r;
+    float ground = texelFetch(height, data_cell(cell), 0).r;
     float top = ground, foot = vertical.w;
     if (of_water != 0) {
         foot = ground;
-        top = ground + max(water_depth_of_cell(cell, ground), 0.0);
+        top = ground + max(water_depth_of_cell(data_cell(cell), ground), 0.0);
     }
     elevation = (gl_VertexID & 1) == 0 ? top : foot;
     below = top - elevation;

@@ -23,6 +23,7 @@ void main() {
         if (k != NO_CLASS) ground = mix(ground, class_colours[k] * light, 0.9);
     }
     ground = with_difference(ground, uv);
+    if (past_data(uv)) ground = NO_DATA;
     if (picture.w > 0.5) ground = mix(ground, LEVEL_COLOURS[level] * (0.75 + 0.25 * block_shade), 0.55);
     colour = vec4(mix(horizon.rgb, ground, clear_air), 1.0);
 }

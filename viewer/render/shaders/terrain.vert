@@ -9,7 +9,7 @@ flat out float block_shade;
 
 void main() {
     ivec2 cell = block_vertex();
-    elevation = texelFetch(height, cell, 0).r;
+    elevation = texelFetch(height, data_cell(cell), 0).r;
     uv = (vec2(cell) + 0.5) / grid.xy;
     vec3 world = world_of_cell(vec2(cell), elevation);
     clear_air = air_transmission(world);

@@ -72,5 +72,7 @@ void main() {
         float glint = pow(max(dot(mirror, sun.xyz), 0.0), 400.0) * 0.9 * lively;
         surface = mix(surface, reflected, fresnel * edge) + glint * edge * vec3(1.0, 0.95, 0.85);
     }
-    colour = vec4(mix(horizon.rgb, with_difference(surface, uv), clear_air), 1.0);
+    surface = with_difference(surface, uv);
+    if (past_data(uv)) surface = NO_DATA;
+    colour = vec4(mix(horizon.rgb, surface, clear_air), 1.0);
 }

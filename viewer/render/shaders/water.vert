@@ -14,9 +14,10 @@ out float clear_air;
 
 void main() {
     ivec2 cell = block_vertex();
-    float ground = texelFetch(height, cell, 0).r;
-    depth = water_depth_of_cell(cell, ground);
-    slope = mix(texelFetch(slope_first, cell, 0).rg, texelFetch(slope_second, cell, 0).rg, alpha);
+    ivec2 data = data_cell(cell);
+    float ground = texelFetch(height, data, 0).r;
+    depth = water_depth_of_cell(data, ground);
+    slope = mix(texelFetch(slope_first, data, 0).rg, texelFetch(slope_second, data, 0).rg, alpha);
     uv = (vec2(cell) + 0.5) / grid.xy;
     world = world_of_cell(vec2(cell), ground + depth);
     clear_air = air_transmission(world);

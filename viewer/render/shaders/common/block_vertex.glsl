@@ -16,5 +16,5 @@ ivec2 block_vertex() {
         if (local.y == 0) v.x = (local.x >> s) << s;
         if (local.y == stride) v.x = (local.x >> n) << n;
     }
-    return min(ivec2(in_block) * stride + v, ivec2(grid.xy) - 1);
+    return min(ivec2(in_block) * stride + v, ivec2(blocks.xy));
 }
