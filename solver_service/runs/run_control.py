@@ -160,10 +160,10 @@ class RunControl:
             await self._supervisor.settle(run)
             await self._store.call(RunDatabase.delete_run, name)
             self._tree.remove(name)
+            self._audience.announce(RunRemoved(name))  # at once: nobody may ask the tree for it any more
             self._supervisor.policy.forget(name)
             self._controllers.forget(name)
             await asyncio.to_thread(remove_run_files, self._folder, name)
-        self._audience.announce(RunRemoved(name))
 
     async def _mark(self, name: str, move: Move, **fields: str | bool) -> None:
         run = self._tree.get(name)

@@ -70,6 +70,8 @@ class FrameFeed:
         try:
             frame = await self._registry.read_frame(record)
         except StoreError:
+            if cursor is not self._cursor:
+                return None  # nobody wants it any more; its run may have been deleted
             cursor.next_index = max(cursor.next_index, wanted + 1)
             raise
         # whoever moved the cursor while the bytes were read wants another frame now

@@ -3,6 +3,7 @@ import pytest
 from protocol import RunRemoved
 from solver_service.errors import RunError
 from solver_service.runs import Run
+from solver_service.store import DataFolder, remove_run_files
 from tests.solver_service.runs.conftest import Service
 
 DURATION = 400.0
@@ -39,6 +40,22 @@ def test_a_run_is_deleted_with_its_files_when_nothing_needs_it(service: Service)
         assert RunRemoved(run.run) in service.heard
     with pytest.raises(RunError, match="there is no run"):
         service.call(registry.control.delete(root.run))
+
+
+def test_everybody_has_heard_that_a_run_is_gone_before_its_files_go(
+    service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = start(service)
+    service.call(service.registry.control.stop(run.run))
+    heard = []
+
+    def remove(folder: DataFolder, name: str) -> None:
+        heard.append(RunRemoved(name) in service.heard)
+        remove_run_files(folder, name)
+
+    monkeypatch.setattr("solver_service.runs.run_control.remove_run_files", remove)
+    service.call(service.registry.control.delete(run.run))
+    assert heard == [True], "whoever watches would ask for frames of a run that is not there"
 
 
 def test_a_label_and_a_pin_are_told_and_kept(service: Service) -> None:
