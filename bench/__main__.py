@@ -28,6 +28,7 @@ NOT_BENCHES = {
     "machine",
     "service_process",
     "shaped_link",
+    "slope",
     "slosh",
     "viewer_scenes",
 }

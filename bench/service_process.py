@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 import subprocess
 import sys
 import time
@@ -153,6 +154,10 @@ class ServiceClient:
     ) -> None:
         """Close the connection."""
         self._connection.close()
+
+    def cut(self) -> None:
+        """Lose the connection, as a network does."""
+        self._connection.socket.shutdown(socket.SHUT_RDWR)
 
     def until(self, wanted: Callable[[protocol.ClientEvent], bool], timeout_s: float = TIMEOUT_S) -> Any:
         """Receive until an event is wanted; give that one.

@@ -94,14 +94,17 @@ class Watch:
     def cpu_per_step(self, seconds: float) -> float:
         """Processor time of the worker a step, over so long from now [s]."""
         steps, cpu = self._now()
-        time.sleep(seconds)
+        self.read(seconds)
         steps_after, cpu_after = self._now()
         return (cpu_after - cpu) / (steps_after - steps)
 
+    def read(self, seconds: float) -> None:
+        """Take in what is told for so long."""
+        with suppress(TimeoutError):
+            self.client.until(lambda event: False, timeout_s=seconds)
+
     def _now(self) -> tuple[int, float]:
         """Steps so far, and the processor time of the worker when that was told [s]."""
-        with suppress(TimeoutError):  # what was told meanwhile is old
-            self.client.until(lambda event: False, timeout_s=0.1)
         steps = self.client.first(protocol.Progress, lambda told: told.run == self.run).steps
         return steps, sum(self.worker.cpu_times()[:2])
 
@@ -171,7 +174,7 @@ def _dead_viewers(watch: Watch) -> Iterator[dict[str, object]]:
         begun = time.monotonic()
         held = dict(crowd.sessions)
         while held and time.monotonic() - begun < 2.0 * GONE_WITHIN_S:
-            time.sleep(0.25)
+            watch.read(0.25)
             for name, session in list(held.items()):
                 if not watch.is_connected(session):
                     del held[name]
