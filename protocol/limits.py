@@ -98,3 +98,6 @@ KEY_FRAMES_KEPT = 4
 
 FRAME_GROUP = 32
 """Most frames that share one key frame, itself included."""
+
+MAX_VIEWS_PER_S = 20
+"""Views a session may present in a second."""

@@ -32,6 +32,7 @@ from protocol.messages import (
     ResumePoint,
     RunInfo,
     ServerMessage,
+    View,
     WireLimits,
     WireStruct,
 )
@@ -49,6 +50,7 @@ RECORDS: tuple[type[WireStruct], ...] = (
     ForcingItem,
     ForcingChange,
     ForcingSeries,
+    View,
 )
 
 

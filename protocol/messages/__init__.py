@@ -24,6 +24,7 @@ from protocol.messages.flow import Credit, Seek, Subscribe, SubscriptionMode, Un
 from protocol.messages.forcing import ChangeForcing, ForcingChanged
 from protocol.messages.frames import Frame, FramePart
 from protocol.messages.handshake import Hello, ResumePoint, Welcome, WireLimits
+from protocol.messages.presenting import PresentView, View, ViewPresented
 from protocol.messages.runs import (
     DeleteRun,
     GridInfo,
@@ -75,6 +76,7 @@ ClientMessage = (
     | DeleteRun
     | TakeControl
     | ReleaseControl
+    | PresentView
 )
 
 ServerMessage = (
@@ -97,6 +99,7 @@ ServerMessage = (
     | ControlChanged
     | ControlRequested
     | WaterBudget
+    | ViewPresented
 )
 
 __all__ = [
@@ -132,6 +135,7 @@ __all__ = [
     "Notice",
     "PauseRun",
     "PinRun",
+    "PresentView",
     "Progress",
     "Recalculate",
     "RedoEdit",
@@ -157,6 +161,8 @@ __all__ = [
     "UndoEdit",
     "UnpinRun",
     "Unsubscribe",
+    "View",
+    "ViewPresented",
     "WaterBudget",
     "Welcome",
     "WireLimits",

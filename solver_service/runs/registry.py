@@ -20,6 +20,7 @@ from solver_service.runs.case_catalogue import CaseCatalogue
 from solver_service.runs.controllers import Controllers
 from solver_service.runs.edit_desk import EditDesk
 from solver_service.runs.housekeeper import Housekeeper, RoomRules
+from solver_service.runs.presentations import Presentations
 from solver_service.runs.restart_policy import RestartPolicy
 from solver_service.runs.run_control import RunControl
 from solver_service.runs.run_reports import RunReports
@@ -51,6 +52,7 @@ class RunRegistry:
         tree: all runs.
         edits: their working lists.
         controllers: who may change them.
+        presentations: who shows a view to the others.
         supervisor: their workers.
         control: starts, pauses, ends and marks them.
         branching: makes their children.
@@ -107,6 +109,7 @@ class RunRegistry:
         self.tree = RunTree()
         self.reports = RunReports(self.tree, self._store, self.audience)
         self.controllers = Controllers(self.audience.announce)
+        self.presentations = Presentations(self.audience.announce)
         self.edits = EditDesk(self.tree, self._store, self.audience)
         policy = RestartPolicy(restart_attempts, restart_within_s)
         self.supervisor = Supervisor(

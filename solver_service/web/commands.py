@@ -17,6 +17,7 @@ from protocol import (
     ListRuns,
     PauseRun,
     PinRun,
+    PresentView,
     Recalculate,
     RedoEdit,
     ReleaseControl,
@@ -132,6 +133,11 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
         case TakeControl():
             registry.tree.get(command.run)
             registry.controllers.take(command.run, client.identity, command.force)
+            client.tell(Ack(command.id))
+        case PresentView():
+            if command.view is not None:
+                registry.tree.get(command.view.run)
+            registry.presentations.present(client.identity, command.view)
             client.tell(Ack(command.id))
         case ReleaseControl():
             _release(command, client)

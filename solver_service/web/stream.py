@@ -27,6 +27,7 @@ from protocol import (
     ServerMessage,
     ServerSession,
     SessionState,
+    ViewPresented,
     WaterBudget,
     Welcome,
     operation,
@@ -115,6 +116,7 @@ class StreamConnection:
             self.is_welcome = False
             self.registry.audience.remove(self)
             self.registry.controllers.ended(self.name)
+            self.registry.presentations.ended(self.name)
             self.session.close()
 
     def end(self, code: int, reason: str) -> None:
@@ -160,6 +162,8 @@ class StreamConnection:
             case ControlChanged():
                 if self._concerns(message):
                     self.tell(message)
+                return
+            case ViewPresented() if message.session == self.name:
                 return
             case ControlRequested() if message.run not in self._controlled:
                 return
@@ -319,6 +323,8 @@ class StreamConnection:
         tag_log(token=(self.access and self.access.token) or "")
         LOG.info("welcome %s", hello.client or "unnamed client")
         self.registry.audience.add(self)
+        for presented in self.registry.presentations.current:
+            self.tell(presented)
         if hello.resume is not None and hello.resume.run in self.registry.tree:
             run = self.registry.tree.get(hello.resume.run)
             self.tell(RunChanged(self.registry.tree.info(run)))

@@ -102,6 +102,8 @@ ITEMS = (
     p.ForcingItem("dike", "breach", "s", start_time=0.0, overtopping=True),
 )
 
+VIEW = p.View("r-1", 120.0, 382000.0, 6354000.0, 2500.0, 45.0, 30.0, True, 60.0)
+
 CLIENT_EXAMPLES: dict[str, Message] = {
     "hello": p.Hello(client="test 1.0", versions=("fev.v1",), capabilities=("depth", "edits")),
     "hello-resume": p.Hello(
@@ -141,6 +143,8 @@ CLIENT_EXAMPLES: dict[str, Message] = {
     "unpin_run": p.UnpinRun(18, "r-1"),
     "delete_run": p.DeleteRun(19, "r-1"),
     "take_control": p.TakeControl(20, "r-1", True),
+    "present_view": p.PresentView(22, VIEW),
+    "present_view-end": p.PresentView(23),
     "release_control": p.ReleaseControl(21, "r-1", "c0ffee"),
 }
 
@@ -205,6 +209,7 @@ SERVER_EXAMPLES: dict[str, Message] = {
     "run_removed": p.RunRemoved("r-2"),
     "control_changed": p.ControlChanged("r-1", "c0ffee", "fev-viewer 0.1.0"),
     "control_requested": p.ControlRequested("r-1", "decaf", "fev-viewer 0.1.0"),
+    "view_presented": p.ViewPresented("c0ffee", "fev-viewer 0.1.0", VIEW),
     "notice": p.Notice("warning", "The disk is nearly full.", "r-1"),
 }
 
