@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -125,12 +126,15 @@ class Housekeeper:
         free = await asyncio.to_thread(free_bytes, self.folder)
         lack = self.rules.reserve_bytes - free
         if self.rules.store_bytes is not None:
-            lack = max(lack, await self.store.call(RunDatabase.used_bytes) - self.rules.store_bytes)
+            stored = await self.store.call(RunDatabase.stored_bytes)
+            lack = max(lack, sum(each.size for each in stored) - self.rules.store_bytes)
         return lack
 
     async def _make_room(self, lack: int) -> int:
         """Remove what may go, in the order of the plan; gives what was freed [bytes]."""
-        sizes = await self.store.call(RunDatabase.frame_bytes)
+        sizes: Counter[str] = Counter()
+        for each in await self.store.call(RunDatabase.stored_bytes):
+            sizes[each.run] += each.size if each.kind != "checkpoints" else 0
         runs = []
         for run in self.tree:
             checkpoints = await self.store.call(RunDatabase.checkpoints, run.run)
@@ -141,7 +145,7 @@ class Housekeeper:
                     run.record.parent,
                     ended,
                     run.record.pinned,
-                    sizes.get(run.run, 0),
+                    sizes[run.run],
                     tuple(checkpoints),
                 )
             )

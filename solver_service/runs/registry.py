@@ -35,6 +35,7 @@ from solver_service.store import (
     FrameReader,
     FrameRecord,
     RunDatabase,
+    StoredBytes,
     load_bed,
 )
 
@@ -192,9 +193,9 @@ class RunRegistry:
         """A case on offer, or None."""
         return self._catalogue.find(name)
 
-    async def owned_bytes(self, owner: str) -> int:
-        """Room that the runs of an owner take in the store [bytes]."""
-        return await self._store.call(RunDatabase.owned_bytes, owner)
+    async def stored_bytes(self) -> list[StoredBytes]:
+        """Room that each run takes in the store, by kind."""
+        return await self._store.call(RunDatabase.stored_bytes)
 
     def infos(self) -> tuple[RunInfo, ...]:
         """All runs, newest first."""

@@ -17,6 +17,7 @@ from solver_service.store.records import (
     FrameRecord,
     RunEvent,
     RunRecord,
+    StoredBytes,
 )
 from solver_service.store.retention import Removal, StoredRun, plan_removals
 from solver_service.store.room import free_bytes, has_room
@@ -41,6 +42,7 @@ __all__ = [
     "RunEvent",
     "RunRecord",
     "ShelvedCase",
+    "StoredBytes",
     "StoredRun",
     "StoredState",
     "back_up",

@@ -59,6 +59,23 @@ class RunRecord:
 
 
 @dataclass(frozen=True)
+class StoredBytes:
+    """Room that a run takes.
+
+    Attributes:
+        run: the run.
+        owner: id of the token that is charged for it.
+        kind: frames, channels or checkpoints.
+        size: how much [bytes].
+    """
+
+    run: str
+    owner: str
+    kind: str
+    size: int
+
+
+@dataclass(frozen=True)
 class FrameRecord:
     """The commit row of one frame: where its bytes are and how to know that they are whole.
 

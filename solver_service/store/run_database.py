@@ -24,9 +24,10 @@ from solver_service.store.records import (
     FrameRecord,
     RunEvent,
     RunRecord,
+    StoredBytes,
 )
 from solver_service.store.room import store_failure
-from solver_service.store.schema import SCHEMA, UPGRADES, VERSION
+from solver_service.store.schema import SCHEMA, STORED_KINDS, UPGRADES, VERSION
 
 BUSY_TIMEOUT_S = 10.0
 
@@ -269,35 +270,14 @@ class RunDatabase:
             self._log(run, "truncated", f"from frame {index} on")
         return found.rowcount
 
-    def frame_bytes(self) -> dict[str, int]:
-        """Size of the frames and channels of every run that has some [bytes]."""
+    def stored_bytes(self) -> list[StoredBytes]:
+        """Size of what every run has stored, by kind."""
+        kinds = " UNION ALL ".join(f"SELECT run, '{kind}' AS kind, size FROM {kind}" for kind in STORED_KINDS)
         with _told(self._path):
-            return dict(self._db.execute("SELECT run, SUM(size) FROM pieces GROUP BY run").fetchall())
-
-    def owned_bytes(self, owner: str) -> int:
-        """Size of the frames and checkpoints of the runs of an owner [bytes]."""
-        with _told(self._path):
-            row = self._db.execute(
-                "SELECT (SELECT COALESCE(SUM(size), 0) FROM pieces JOIN runs USING (run) WHERE owner = ?) "
-                "+ (SELECT COALESCE(SUM(size), 0) FROM checkpoints JOIN runs USING (run) WHERE owner = ?)",
-                (owner, owner),
-            ).fetchone()
-        return int(row[0])
-
-    def stored_bytes(self) -> dict[str, int]:
-        """Size of the frames and checkpoints of every run that has some [bytes]."""
-        both = "SELECT run, size FROM pieces UNION ALL SELECT run, size FROM checkpoints"
-        with _told(self._path):
-            return dict(self._db.execute(f"SELECT run, SUM(size) FROM ({both}) GROUP BY run").fetchall())
-
-    def used_bytes(self) -> int:
-        """Size of all frames and checkpoints [bytes]."""
-        with _told(self._path):
-            row = self._db.execute(
-                "SELECT (SELECT COALESCE(SUM(size), 0) FROM pieces) "
-                "+ (SELECT COALESCE(SUM(size), 0) FROM checkpoints)"
-            ).fetchone()
-        return int(row[0])
+            rows = self._db.execute(
+                f"SELECT run, owner, kind, SUM(size) FROM ({kinds}) JOIN runs USING (run) GROUP BY run, kind"
+            ).fetchall()
+        return [StoredBytes(*row) for row in rows]
 
     def segment_ends(self, run: str) -> dict[str, int]:
         """Committed length of every segment file of a run."""

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 VERSION = 5
 
+STORED_KINDS = ("frames", "channels", "checkpoints")
+"""Tables whose rows stand for bytes in files, each with its `size`."""
+
 _CHANNELS = """
 CREATE TABLE channels (
     run TEXT NOT NULL, "index" INTEGER NOT NULL, channel TEXT NOT NULL, segment TEXT NOT NULL,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -91,7 +91,10 @@ class OverviewSource:
         """The overview now."""
         now = time.monotonic()
         if now - self._sizes_at > SIZES_AGE_S:
-            self._sizes, self._sizes_at = await self.registry.stored_bytes(), now
+            sizes: Counter[str] = Counter()
+            for stored in await self.registry.stored_bytes():
+                sizes[stored.run] += stored.size
+            self._sizes, self._sizes_at = sizes, now
         workers = self.registry.pool.workers
         return {
             "service": {"service": self._service(workers)},

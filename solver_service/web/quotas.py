@@ -170,8 +170,9 @@ class Quotas:
 
     async def disk_bytes(self, owner: str) -> int:
         """Room on the disk that an owner takes [bytes]."""
-        stored = await self._registry.owned_bytes(owner)
-        return stored + sum(source(owner) for source in self._disk_sources)
+        stored = await self._registry.stored_bytes()
+        own = sum(each.size for each in stored if each.owner == owner)
+        return own + sum(source(owner) for source in self._disk_sources)
 
     def _claim(self, owner: str, shape: tuple[int, int], device: str, runs: int) -> Claim:
         on_gpu = _is_gpu(device, self._registry.pool.devices)

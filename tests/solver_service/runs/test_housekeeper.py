@@ -37,7 +37,8 @@ def housekeeper(service: Service, **rules: int) -> Housekeeper:
 
 def used(service: Service) -> int:
     async def ask() -> int:
-        return await service.registry._store.call(RunDatabase.used_bytes)
+        stored = await service.registry._store.call(RunDatabase.stored_bytes)
+        return sum(each.size for each in stored)
 
     return service.call(ask())
 

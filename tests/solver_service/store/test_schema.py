@@ -72,12 +72,20 @@ def test_the_bytes_of_an_owner_are_those_of_its_own_runs(tmp_path: Path, owner: 
     with closing(sqlite3.connect(path)) as rows:
         for run, whose, size in (("r1", "a", 10), ("r2", "b", 200), ("r3", "b", 3000)):
             rows.execute(
-                "INSERT INTO runs VALUES (?,'c','f','t',NULL,0,'paused','',9.0,1.0,'cpu',0,'','','',0,?,'','')",
+                'INSERT INTO runs (run, "case", case_fingerprint, title, branch_index, status, status_reason, '
+                "duration, output_interval, device, bed_revision, bed_edits, facts, owner) "
+                "VALUES (?, 'c', 'f', 't', 0, 'paused', '', 9.0, 1.0, 'cpu', 0, x'', x'', ?)",
                 (run, whose),
             )
             rows.execute("INSERT INTO frames VALUES (?,0,0.0,0,0,'s',0,?,0)", (run, size))
             rows.execute("INSERT INTO channels VALUES (?,0,'maxima','s',?,5,0)", (run, size))
             rows.execute("INSERT INTO checkpoints VALUES (?,0.0,0,'n',0,?)", (run, size + 1))
         rows.commit()
-    assert database.owned_bytes(owner) == {"a": 26, "b": 6412, "": 0}[owner]
+    stored = database.stored_bytes()
+    assert sum(each.size for each in stored if each.owner == owner) == {"a": 26, "b": 6412, "": 0}[owner]
+    assert {each.kind: each.size for each in stored if each.run == "r2"} == {
+        "frames": 200,
+        "channels": 5,
+        "checkpoints": 201,
+    }
     database.close()

@@ -290,7 +290,7 @@ def test_room_on_the_disk_is_kept_while_something_is_written(stored: Path, case:
         registry = RunRegistry(stored, cases=(case,), spare_workers=0)
         await registry.open()
         tokens = TokenStore(stored)
-        taken = await registry.owned_bytes("")
+        taken = sum(each.size for each in await registry.stored_bytes())
         quotas = Quotas(TokenLimits(max_disk_bytes=taken + 1000), tokens, registry)
         uploads = {"": 0}
         quotas.count_disk(lambda owner: uploads[owner])
