@@ -1,7 +1,7 @@
-"""Replay from the store over a real socket: rate, bits, gaps; and how long publishing a frame waits.
+"""Replay from the store over a real socket: rate, bits, gaps, lag of the event loop; publishing's wait.
 
 The flood is a lake over a third and more of 2113 x 1949 cells that sloshes, so that frames are large and
-differ. The viewer decodes every frame and pays for it with one credit.
+differ. The viewer decodes every frame and pays for it with one credit. Another process pings meanwhile.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import protocol
+from bench.loop_lag import LoopLag
 from bench.service_process import ServiceClient, ServiceProcess
 from bench.slosh import write_slosh_case
 from protocol import BlockLayout
@@ -51,7 +52,7 @@ def _replay(
     service: ServiceProcess, run: str, layout: BlockLayout, last: int, seconds: float
 ) -> Iterator[dict[str, object]]:
     arrivals, sizes, wet = [], [], []
-    with ServiceClient(service, layout=layout) as client:
+    with LoopLag(service) as lag, ServiceClient(service, layout=layout) as client:
         client.do(protocol.Subscribe, run=run, from_index=0, mode="replay", credit=CREDIT)
         begun = time.perf_counter()
         while time.perf_counter() - begun < seconds:
@@ -81,6 +82,14 @@ def _replay(
         "figure": "replay_gap_p95",
         "value": round(1e3 * float(np.percentile(gaps, 95)), 1),
         "unit": "ms",
+        **about,
+    }
+    yield {
+        "figure": "replay_ping_p99",
+        "value": round(1e3 * lag.quantile(99.0), 1),
+        "unit": "ms",
+        "floor": 20.0,
+        "pings": len(lag.trips),
         **about,
     }
 
