@@ -197,6 +197,10 @@ class RunRegistry:
         """Room that each run takes in the store, by kind."""
         return await self._store.call(RunDatabase.stored_bytes)
 
+    async def stored_bytes(self) -> dict[str, int]:
+        """Room that each run takes in the store [bytes]."""
+        return await self._store.call(RunDatabase.stored_bytes)
+
     def infos(self) -> tuple[RunInfo, ...]:
         """All runs, newest first."""
         return tuple(self.tree.info(run) for run in reversed(list(self.tree)))

@@ -36,14 +36,14 @@ class FileKind:
 
 
 KINDS = (
-    FileKind("text", (".toml", ".csv", ".asc", ".dem", ".geojson", ".json", ".prj", ".txt", ".md")),
-    FileKind("TIFF", (".tif", ".tiff"), (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")),
-    FileKind("ERDAS Imagine raster", (".img",), (b"EHFA_HEADER_TAG",)),
-    FileKind("archive of arrays or of an SRTM tile", (".npz", ".hgt.zip"), (b"PK\3\4",)),
-    FileKind("SELAFIN mesh", (".slf",), (b"\0\0\0\x50",)),
-    FileKind("gzipped SELAFIN mesh", (".slf.gz",), (b"\x1f\x8b",)),
-    FileKind("PNG picture", (".png",), (b"\x89PNG\r\n\x1a\n",)),
-    FileKind("JPEG picture", (".jpg", ".jpeg"), (b"\xff\xd8\xff",)),
+    FileKind("a text", (".toml", ".csv", ".asc", ".dem", ".geojson", ".json", ".prj", ".txt", ".md")),
+    FileKind("a TIFF", (".tif", ".tiff"), (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")),
+    FileKind("an ERDAS Imagine raster", (".img",), (b"EHFA_HEADER_TAG",)),
+    FileKind("an archive of arrays or of an SRTM tile", (".npz", ".hgt.zip"), (b"PK\3\4",)),
+    FileKind("a SELAFIN mesh", (".slf",), (b"\0\0\0\x50",)),
+    FileKind("a gzipped SELAFIN mesh", (".slf.gz",), (b"\x1f\x8b",)),
+    FileKind("a PNG picture", (".png",), (b"\x89PNG\r\n\x1a\n",)),
+    FileKind("a JPEG picture", (".jpg", ".jpeg"), (b"\xff\xd8\xff",)),
 )
 TILE_SUFFIX = ".hgt"
 """An SRTM tile has no beginning of its own; its size is checked by its reader."""
@@ -81,4 +81,4 @@ def check_files(root: Path) -> None:
         with path.open("rb") as file:
             head = file.read(HEAD_BYTES)
         if not kind.fits(head):
-            raise CaseError(f"{name}: does not begin like a {kind.name}; what its name says is allowed.")
+            raise CaseError(f"{name}: does not begin like {kind.name}; what its name says is allowed.")

@@ -48,14 +48,19 @@ def main(folder: Path, parent: int, limits: ImportLimits, say: Callable[[ImportM
     """
     try:
         confine(limits, parent)
-        say(_import(folder, limits, say))
+        say(import_archive(folder, limits, say))
     except ServiceError as error:
         say(Refused(_sentence(str(error), folder)))
     except MemoryError:
         say(Refused(f"The case needs more than {limits.memory_bytes >> 20} MiB of memory to be read."))
 
 
-def _import(folder: Path, limits: ImportLimits, say: Callable[[ImportMessage], None]) -> Accepted:
+def import_archive(folder: Path, limits: ImportLimits, say: Callable[[ImportMessage], None]) -> Accepted:
+    """Unpack the archive of a folder, look at every file, read the case and try its solver.
+
+    Raises:
+        ServiceError: the case cannot be run.
+    """
     # only now, confined, is anything loaded that reads files
     from solver_service.offline import check_case
     from solver_service.scenario import load_case, summary_of

@@ -14,14 +14,20 @@ from protocol import PROTOCOL_VERSION
 from solver_service.errors import AccessError, ServiceError
 from solver_service.logging_setup import tag_log
 from solver_service.runs import RunRegistry
+from solver_service.uploads.upload_desk import UploadDesk
 from solver_service.web.auth import Access, Gate
 from solver_service.web.error_codes import http_status, wire_code
 from solver_service.web.metrics import CONTENT_TYPE, metrics_text, unready_reason
+from solver_service.web.operator_page import page_router
+from solver_service.web.overview import OverviewSource
+from solver_service.web.overview_feed import OverviewFeed
 from solver_service.web.quotas import Quotas, owner_of
 from solver_service.web.request_log import RequestLog
+from solver_service.web.run_actions import action_router
 from solver_service.web.scopes import Scope
 from solver_service.web.stream import StreamConnection
 from solver_service.web.token_store import TokenStore
+from solver_service.web.upload_routes import upload_router
 from solver_service.web.version import SERVER_NAME, server_version
 
 
@@ -41,7 +47,14 @@ class RunCreated(BaseModel):
     run: str
 
 
-def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore, quotas: Quotas) -> FastAPI:
+def create_app(
+    registry: RunRegistry,
+    gate: Gate,
+    tokens: TokenStore,
+    quotas: Quotas,
+    desk: UploadDesk,
+    store_bytes: int | None = None,
+) -> FastAPI:
     """Make the application.
 
     Args:
@@ -49,15 +62,19 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore, quotas: Qu
         gate: who may come in.
         tokens: the tokens that an admin looks at and revokes.
         quotas: how much the holder of a token may take.
+        desk: takes uploads in.
+        store_bytes: budget of the store, for the operator's page.
 
     Returns:
         The application; `app.state.connections` is the set of open streams, `app.state.accepts` is set while
-        new viewers are welcome.
+        new viewers are welcome, `app.state.feed` is the feed of the operator's page.
     """
     app = FastAPI(title="FEV solver service", version=server_version())
     connections: set[StreamConnection] = set()
     app.state.connections = connections
     app.state.accepts = False
+    source = OverviewSource(registry, desk, connections, tokens.path.parent, store_bytes)
+    app.state.feed = OverviewFeed(source.collect)
     app.add_middleware(RequestLog)
 
     def needs(scope: Scope) -> Any:
@@ -124,9 +141,10 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore, quotas: Qu
         }
 
     @app.get("/v1/cases", dependencies=[needs(Scope.VIEWER)])
-    def cases() -> list[dict[str, Any]]:
+    async def cases() -> list[dict[str, Any]]:
         """The cases on offer."""
-        return [msgspec.to_builtins(case) for case in registry.cases]
+        uploaded = {case.summary.name for case in desk.cases}
+        return [{**msgspec.to_builtins(case), "uploaded": case.name in uploaded} for case in registry.cases]
 
     @app.get("/v1/runs", dependencies=[needs(Scope.VIEWER)])
     async def runs() -> list[dict[str, Any]]:
@@ -169,6 +187,10 @@ def create_app(registry: RunRegistry, gate: Gate, tokens: TokenStore, quotas: Qu
             raise HTTPException(404, f"there is no token {token!r}")
         record = tokens.revoke(token)
         return {**asdict(record), "scope": str(record.scope)}
+
+    app.include_router(upload_router(desk, quotas, needs))
+    app.include_router(action_router(registry, quotas, connections, needs))
+    app.include_router(page_router(app.state.feed, gate, needs))
 
     @app.websocket("/v1/stream")
     async def stream(websocket: WebSocket) -> None:

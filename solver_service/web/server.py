@@ -19,6 +19,8 @@ from protocol import limits
 from solver_service.errors import ServeError
 from solver_service.logging_setup import conceal, set_up_logging
 from solver_service.runs import RoomRules, RunRegistry
+from solver_service.store import DataFolder
+from solver_service.uploads.upload_desk import UploadDesk
 from solver_service.web.app import create_app
 from solver_service.web.auth import Gate, load_token
 from solver_service.web.disk_watch import watch_disk
@@ -68,13 +70,15 @@ def run_service(settings: ServiceSettings) -> None:
         )
         tokens = TokenStore(settings.data_dir)
         quotas = Quotas(settings.limits, tokens, registry)
+        desk = UploadDesk(registry, DataFolder(settings.data_dir), settings.upload_rules)
+        quotas.count_disk(desk.owned_bytes)
         secret = load_token(settings.token_path)
         conceal(secret)
         gate = Gate(secret, settings.allowed_origins, tokens)
     except BaseException:
         listener.close()
         raise
-    server = _Server(settings, registry, gate, tokens, quotas, lambda: _tell_ready(settings, listener))
+    server = _Server(settings, registry, gate, tokens, quotas, desk, lambda: _tell_ready(settings, listener))
     # uvicorn raises the signal that stopped it once more when it is done; it has done its work by then
     signal.signal(signal.SIGTERM, lambda number, frame: None)
     if settings.stop_with_stdin:
@@ -93,14 +97,16 @@ class _Server(uvicorn.Server):
         gate: Gate,
         tokens: TokenStore,
         quotas: Quotas,
+        desk: UploadDesk,
         on_ready: Callable[[], None],
     ) -> None:
         self._registry = registry
         self._gate = gate
         self._tokens = tokens
         self._quotas = quotas
+        self._desk = desk
         self._on_ready = on_ready
-        self._app = create_app(registry, gate, tokens, quotas)
+        self._app = create_app(registry, gate, tokens, quotas, desk, settings.store_bytes)
         super().__init__(
             uvicorn.Config(
                 self._app,
@@ -134,6 +140,8 @@ class _Server(uvicorn.Server):
             watch.cancel()
         for connection in tuple(self._app.state.connections):
             connection.end(GOING_AWAY, "the service is ending")
+        await self._app.state.feed.close()
+        await self._desk.close()
         await asyncio.gather(super().shutdown(sockets), self._registry.close())
         self._tokens.close()
 

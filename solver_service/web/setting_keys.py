@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from protocol.limits import MAX_CELLS
 from solver_service.logging_setup import LEVELS
 from solver_service.web.settings import ServiceSettings
 
@@ -172,6 +173,15 @@ KEYS: tuple[SettingKey, ...] = (
         pattern="|".join(LEVELS),
         allowed=", ".join(LEVELS),
     ),
+    SettingKey("upload_bytes", "integer", "most bytes of an uploaded archive", least=0, most=4 << 30),
+    SettingKey("upload_cells", "integer", "most cells of an uploaded case", least=1, most=MAX_CELLS),
+    SettingKey(
+        "upload_memory_bytes",
+        "integer",
+        "most memory of the process that imports a case [bytes]",
+        least=1 << 30,
+    ),
+    SettingKey("upload_time_s", "number", "most time of an import [s]", least=1, most=86_400),
     _limit("max_runs", "runs that a token may keep"),
     _limit("max_cells", "cells that the runs of a token may compute at the same time"),
     _limit("max_gpu_bytes", "GPU memory that the runs of a token may take [bytes]"),

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from solver_service.store import default_data_dir
+from solver_service.uploads.import_messages import ImportLimits
+from solver_service.uploads.upload_rules import UploadRules
 from solver_service.web.token_limits import NAMES, TokenLimits
 
 
@@ -39,6 +41,10 @@ class ServiceSettings:
         reserve_bytes: room on the disk that is left to others [bytes].
         log_format: "text" or "json".
         log_level: least level of the lines that are written.
+        upload_bytes: most bytes of an uploaded archive.
+        upload_cells: most cells of an uploaded case.
+        upload_memory_bytes: most memory of the process that imports one [bytes].
+        upload_time_s: most time that the import of one may take [s].
         max_runs: runs that a token may keep; None for no limit, as with all that follow.
         max_cells: cells that the runs of a token may compute at the same time.
         max_gpu_bytes: GPU memory that the runs of a token may take [bytes].
@@ -68,6 +74,10 @@ class ServiceSettings:
     reserve_bytes: int = 256 << 20
     log_format: str = "text"
     log_level: str = "warning"
+    upload_bytes: int = 1 << 30
+    upload_cells: int = 20_000_000
+    upload_memory_bytes: int = 8 << 30
+    upload_time_s: float = 600.0
     max_runs: int | None = None
     max_cells: int | None = None
     max_gpu_bytes: int | None = None
@@ -79,6 +89,14 @@ class ServiceSettings:
     def limits(self) -> TokenLimits:
         """What a token may take that says nothing itself, and the token file."""
         return TokenLimits(**{name: getattr(self, name) for name in NAMES})
+
+    @property
+    def upload_rules(self) -> UploadRules:
+        """What an upload may take."""
+        limits = ImportLimits(
+            cells=self.upload_cells, memory_bytes=self.upload_memory_bytes, time_s=self.upload_time_s
+        )
+        return UploadRules(self.upload_bytes, limits, self.reserve_bytes)
 
     @property
     def token_path(self) -> Path:

@@ -229,7 +229,7 @@ function events() {
   if (!rows.length) { list.replaceChildren(node("li", "none", "nothing has happened yet")); return; }
   if (!newest) list.replaceChildren();
   for (const one of rows.filter((row) => row.number > newest).reverse()) {
-    const moment = node("time", "", new Date(one.moment * 1000).toLocaleTimeString());
+    const moment = node("time", "", new Date(one.moment * 1000).toLocaleTimeString([], { hour12: false }));
     const text = node("span", "", one.text, one.run ? node("span", "id", ` ${one.run}`) : "");
     const item = node("li", "", moment, node("span", one.level, one.level), text);
     item.dataset.number = one.number;
