@@ -83,13 +83,39 @@ class RunRow:
 
 
 @dataclass(frozen=True)
-class EditRow:
-    """An edit of the working list.
+class EditSettings:
+    """What an edit is, or the next one will be.
 
     Attributes:
+        width: width of a line [m].
+        magnitude: height of the change [m].
+        operation: "raise" or "lower".
+        type: "modulate" or "replace".
+        level: elevation of the crest or floor [m], for "replace" with `at_level`.
+        at_level: whether "replace" means that elevation, not the magnitude above the ground.
+    """
+
+    width: float = 40.0
+    magnitude: float = 8.0
+    operation: str = "raise"
+    type: str = "modulate"
+    level: float = 0.0
+    at_level: bool = False
+
+
+@dataclass(frozen=True)
+class EditRow:
+    """An edit of the working list, or one that was undone.
+
+    Attributes:
+        text: what it is, in words.
         is_applied: the shown run was computed with it.
         measure: length and volume in words.
         warning: when and where it was first seen overtopped, in words; empty when it was not.
+        name: the name that people gave it.
+        kind: "line" or "area".
+        settings: its numbers.
+        centre: the middle of what it covers, x and y [m].
     """
 
     id: str
@@ -97,16 +123,10 @@ class EditRow:
     is_applied: bool
     measure: str = ""
     warning: str = ""
-
-
-@dataclass(frozen=True)
-class EditSettings:
-    """What the next edit will be: width [m], magnitude [m], "raise" or "lower", "modulate" or "replace"."""
-
-    width: float = 40.0
-    magnitude: float = 8.0
-    operation: str = "raise"
-    type: str = "modulate"
+    name: str = ""
+    kind: str = "line"
+    settings: EditSettings = field(default_factory=EditSettings)
+    centre: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -148,6 +168,9 @@ class ViewStatus:
         computed_until: time of the newest frame of the shown run [s].
         branch_time: where the shown run left its parent [s], None when it has none.
         speed_x_real_time: simulated seconds per wall second of the computation.
+        undone_edits: edits that redoing would bring back, the next one first.
+        edit_tool: the tool in the user's hand: "line", "area", "select", "level", or empty.
+        selected_edit: id of the selected edit.
         water_colour: what the water is to be coloured by.
         water_colours: what the shown run lets it be coloured by.
         water_note: why the colours wanted are not there yet, one sentence.
@@ -188,6 +211,9 @@ class ViewStatus:
     drawn_vertices: int = 0
     edit_settings: EditSettings = field(default_factory=EditSettings)
     edits: tuple[EditRow, ...] = ()
+    undone_edits: tuple[EditRow, ...] = ()
+    edit_tool: str = ""
+    selected_edit: str | None = None
     can_undo: bool = False
     can_redo: bool = False
     can_recalculate: bool = False

@@ -27,6 +27,16 @@ GRID = protocol.GridGeometry(NROWS, NCOLS, DX, 1000.0, 2000.0, "local", "local",
 TOKEN = "tiny-token"
 
 
+EditCommand = (
+    protocol.AppendEdit
+    | protocol.AppendEdits
+    | protocol.ReplaceEdit
+    | protocol.DeleteEdit
+    | protocol.UndoEdit
+    | protocol.RedoEdit
+)
+
+
 def valley() -> npt.NDArray[np.float32]:
     """A valley that falls to the east, with its floor in the middle rows [m]."""
     row, col = np.mgrid[0:NROWS, 0:NCOLS].astype(np.float64)
@@ -195,7 +205,14 @@ class TinyService:
                 case protocol.GetTerrain():
                     parts = encode_terrain(message.id, message.run, valley())
                     return [protocol.Ack(message.id), *parts]
-                case protocol.AppendEdit() | protocol.UndoEdit() | protocol.RedoEdit():
+                case (
+                    protocol.AppendEdit()
+                    | protocol.AppendEdits()
+                    | protocol.ReplaceEdit()
+                    | protocol.DeleteEdit()
+                    | protocol.UndoEdit()
+                    | protocol.RedoEdit()
+                ):
                     return self._edit(message)
                 case protocol.Recalculate():
                     return self._recalculate(session, message)
@@ -206,21 +223,27 @@ class TinyService:
                 case _:
                     return [protocol.Ack(message.id)]
 
-    def _edit(
-        self, message: protocol.AppendEdit | protocol.UndoEdit | protocol.RedoEdit
-    ) -> list[protocol.ServerMessage]:
+    def _edit(self, message: EditCommand) -> list[protocol.ServerMessage]:
         log = self.runs[message.run].log
         try:
-            if isinstance(message, protocol.AppendEdit):
-                protocol.check_edit(message.edit, GRID)
-                log.append(message.edit)
-            elif isinstance(message, protocol.UndoEdit):
-                log.undo()
-            else:
-                log.redo()
+            match message:
+                case protocol.AppendEdit() | protocol.ReplaceEdit():
+                    protocol.check_edit(message.edit, GRID)
+                    is_new = isinstance(message, protocol.AppendEdit)
+                    log.append(message.edit) if is_new else log.replace(message.edit)
+                case protocol.AppendEdits():
+                    log.append(*message.edits)
+                case protocol.DeleteEdit():
+                    log.delete(message.edit)
+                case protocol.UndoEdit():
+                    log.undo()
+                case protocol.RedoEdit():
+                    log.redo()
         except protocol.EditError as error:
             return [protocol.Error(message.id, "edit", str(error))]
-        changed = protocol.EditsChanged(message.run, log.revision, log.edits, log.can_undo, log.can_redo)
+        changed = protocol.EditsChanged(
+            message.run, log.revision, log.edits, log.can_undo, log.can_redo, log.undone
+        )
         return [protocol.Ack(message.id, {"revision": log.revision}), changed]
 
     def _recalculate(

@@ -10,7 +10,7 @@ from viewer.app.status_report import depth_record, point_readout
 from viewer.app.water_feed import WaterFeed
 from viewer.commands import MoveHover, ProbeAt
 from viewer.net import FrameLoader
-from viewer.view_status import ViewStatus
+from viewer.view_status import PointReadout, ViewStatus
 
 __all__ = ["Pointing"]
 
@@ -46,6 +46,10 @@ class Pointing:
         row, col = (math.floor(at + 0.5) for at in shown.grid.to_cell(*self.probe_at))
         if 0 <= row < shown.grid.nrows and 0 <= col < shown.grid.ncols:
             self._loader.trace(row, col, [shown.frame_key(index) for index in shown.timeline.indices])
+
+    def readout(self, x: float, y: float, shown: ShownRun | None) -> PointReadout | None:
+        """Return water and ground at (x, y) [m], None outside the terrain."""
+        return None if shown is None else point_readout(shown, self._feed, (x, y))
 
     def report(self, status: ViewStatus, shown: ShownRun) -> ViewStatus:
         """Return `status` with what is known of the two points."""

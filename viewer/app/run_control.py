@@ -59,8 +59,8 @@ class RunControl:
         autostart: StartRun | None = None,
     ) -> None:
         self.desk = ServiceDesk(connection, self)
-        self.editing = Editing(self.desk)
-        self.editing.refused = self._forget_recalculate
+        self.editing = Editing(self.desk, self.say)
+        self.editing.list.settled = self._edits_settled
         self.shown: ShownRun | None = None
         self.recalculated: Recalculation | None = None
         self.message = ""
@@ -149,7 +149,7 @@ class RunControl:
             raise CommandError("a recalculation is under way already")
         if shown.info.frame_count == 0 and len(shown.timeline) == 0:
             raise CommandError("there is no computed frame to recalculate from yet")
-        if self.editing.unconfirmed is not None:
+        if self.editing.list.is_waiting(shown):
             self._recalculate_wanted = True
             return
         self._recalculate_wanted = False
@@ -222,11 +222,6 @@ class RunControl:
         if shown is None or message.run != shown.run:
             return
         self.editing.note_edits(message, shown)
-        if self._recalculate_wanted and self.editing.unconfirmed is None:
-            try:
-                self.recalculate()
-            except CommandError as error:
-                self.say(str(error))
 
     def terrain_came(self, message: protocol.TerrainReceived) -> None:
         """Show the run whose terrain was waited for."""
@@ -283,8 +278,14 @@ class RunControl:
 
     # --- within ---------------------------------------------------------------------------------------
 
-    def _forget_recalculate(self) -> None:
-        self._recalculate_wanted = False
+    def _edits_settled(self, is_taken: bool) -> None:
+        """No edit waits any more: a recalculation that waited for them can begin, if they were taken."""
+        wanted, self._recalculate_wanted = self._recalculate_wanted, False
+        if wanted and is_taken:
+            try:
+                self.recalculate()
+            except CommandError as error:
+                self.say(str(error))
 
     def _show(self, info: protocol.RunInfo) -> None:
         """Show a run: at once when its terrain is at hand, else when it has come."""
@@ -305,7 +306,7 @@ class RunControl:
         is_answer = begun is not None and begun.child == shown.run
         working = self.desk.book.working_lists.get(shown.run)
         if working is not None:
-            shown.document.mirror(working.revision, working.edits, working.can_undo, working.can_redo)
+            self.editing.list.note(working, shown)
         elif is_answer and begun is not None:
             shown.document.mirror(shown.info.revision, begun.edits, bool(begun.edits), False)
         if is_answer and begun is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import Protocol
 
 import protocol
@@ -154,19 +155,41 @@ class ServiceDesk:
         """Ask the stream to go on from another frame."""
         self._link.send(lambda number: protocol.Seek(number, run=run, index=index), "fetch a frame")
 
-    def append_edit(self, run: str, edit: protocol.Edit, refused: Refusal) -> None:
-        """Ask to take an edit into the working list."""
+    def append_edits(
+        self, run: str, edits: Sequence[protocol.Edit], done: Reply, refused: Refusal
+    ) -> None:
+        """Ask to take edits into the working list, all or none."""
+        one, *more = edits
         self._link.send(
-            lambda number: protocol.AppendEdit(number, run=run, edit=edit), "add the edit", refused=refused
+            lambda number: (
+                protocol.AppendEdits(number, run=run, edits=tuple(edits))
+                if more
+                else protocol.AppendEdit(number, run=run, edit=one)
+            ),
+            "add the edits" if more else "add the edit",
+            done,
+            refused,
         )
 
-    def undo_edit(self, run: str) -> None:
-        """Ask to take the newest edit back."""
-        self._link.send(lambda number: protocol.UndoEdit(number, run=run), "undo")
+    def replace_edit(self, run: str, edit: protocol.Edit, done: Reply, refused: Refusal) -> None:
+        """Ask to put an edit in the place of the one of its id."""
+        self._link.send(
+            lambda number: protocol.ReplaceEdit(number, run=run, edit=edit), "change the edit", done, refused
+        )
 
-    def redo_edit(self, run: str) -> None:
-        """Ask to bring an edit back."""
-        self._link.send(lambda number: protocol.RedoEdit(number, run=run), "redo")
+    def delete_edit(self, run: str, edit: str, done: Reply, refused: Refusal) -> None:
+        """Ask to take an edit out of the working list."""
+        self._link.send(
+            lambda number: protocol.DeleteEdit(number, run=run, edit=edit), "delete the edit", done, refused
+        )
+
+    def undo_edit(self, run: str, done: Reply, refused: Refusal) -> None:
+        """Ask to take the newest change of the working list back."""
+        self._link.send(lambda number: protocol.UndoEdit(number, run=run), "undo", done, refused)
+
+    def redo_edit(self, run: str, done: Reply, refused: Refusal) -> None:
+        """Ask to make the change taken back last again."""
+        self._link.send(lambda number: protocol.RedoEdit(number, run=run), "redo", done, refused)
 
     def recalculate(self, run: str, index: int, revision: int, done: Reply, refused: Refusal) -> None:
         """Ask for a branch at a frame with the working list of edits."""

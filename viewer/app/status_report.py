@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 
-from viewer.app.edit_drawing import EditDrawing
+from viewer.app.edit_report import edit_rows, undone_rows
+from viewer.app.editing import Editing
 from viewer.app.levee_watch import LeveeWatch
-from viewer.app.picture_text import edit_rows, readout
+from viewer.app.picture_text import readout
 from viewer.app.recalculation import Recalculation
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
@@ -18,7 +19,7 @@ from viewer.world import PlaybackClock, probe
 __all__ = ["depth_record", "point_readout", "program_status", "run_status"]
 
 
-def program_status(desk: ServiceDesk, clock: PlaybackClock, drawing: EditDrawing, message: str) -> ViewStatus:
+def program_status(desk: ServiceDesk, clock: PlaybackClock, editing: Editing, message: str) -> ViewStatus:
     """Return the part of the status that needs no run."""
     return ViewStatus(
         connection=desk.connection_sentence(),
@@ -34,9 +35,11 @@ def program_status(desk: ServiceDesk, clock: PlaybackClock, drawing: EditDrawing
         follows_live=clock.follows_live,
         playback_speed=clock.speed,
         time=clock.time,
-        is_drawing=drawing.is_on,
-        drawn_vertices=len(drawing.vertices),
-        edit_settings=drawing.settings,
+        is_drawing=editing.drawing.is_on,
+        drawn_vertices=len(editing.drawing.vertices),
+        edit_settings=editing.drawing.settings,
+        edit_tool=editing.tool,
+        selected_edit=editing.selection.selected,
     )
 
 
@@ -63,7 +66,8 @@ def run_status(
         duration=info.duration,
         output_interval=info.output_interval,
         branch_time=None if info.branch_index is None else info.branch_index * info.output_interval,
-        edits=edit_rows(shown, desk.book.edits_below(shown.run, document.revision), watch),
+        edits=edit_rows(shown, desk.book.edits_below(shown.run, document.revision), watch, status.units),
+        undone_edits=undone_rows(shown, status.units),
         can_undo=document.can_undo and desk.is_open,
         can_redo=document.can_redo and desk.is_open,
         can_recalculate=desk.is_open and len(shown.timeline) > 0 and not is_waiting,

@@ -13,10 +13,11 @@ import time as wall_clock
 import protocol
 from viewer.app.camera_work import CameraWork
 from viewer.app.comparison import Comparison
+from viewer.app.edit_report import edit_overlay
 from viewer.app.levee_watch import LeveeWatch
 from viewer.app.map_maker import MapMaker
 from viewer.app.picture_file import checked_order
-from viewer.app.picture_text import edit_overlay, hud_text, loss_notice
+from viewer.app.picture_text import hud_text, loss_notice
 from viewer.app.playback import Playback
 from viewer.app.pointing import Pointing
 from viewer.app.recalculation import Recalculation
@@ -75,6 +76,8 @@ WITHOUT_PICTURE = (
     Undo,
 )
 """Commands that change no picture by themselves; what they bring about does."""
+CLICK_REACH = 0.015
+"""How far a click may miss what it is meant for, as a share of the height of the picture."""
 TEXT_PERIOD_S = 0.5
 """The picture is drawn anew at most this often when only its text has changed [s]."""
 STATUS_PERIOD_S = 0.1
@@ -115,6 +118,8 @@ class ViewerApp:
         self.water = WaterView()
         self.comparison = Comparison(self.desk, loader, self.feed, self.control.resubscribe)
         self.control.resuming = self.comparison.return_stream
+        self.control.editing.reach = self._click_reach
+        self.control.editing.look = lambda x, y: self.pointing.readout(x, y, self.shown)
 
     @property
     def desk(self) -> ServiceDesk:
@@ -270,7 +275,7 @@ class ViewerApp:
         inputs = FrameInputs(
             camera=self.camera_work.camera,
             water=self.feed.pair,
-            edits=edit_overlay(self.shown, self.control.editing.drawing),
+            edits=edit_overlay(self.shown, self.control.editing),
             options=self.options,
             hud=self._drawn_text,
             difference=self.comparison.difference,
@@ -313,7 +318,7 @@ class ViewerApp:
     def is_busy(self) -> bool:
         """Whether an edit or a recalculation waits for the service."""
         begun = self.recalculated
-        return self.control.editing.unconfirmed is not None or (begun is not None and begun.is_waiting)
+        return self.control.editing.list.is_waiting(self.shown) or (begun is not None and begun.is_waiting)
 
     # --- within ---------------------------------------------------------------------------------------
 
@@ -321,6 +326,13 @@ class ViewerApp:
         notice = "" if self.desk.is_open else self._loss_notice()
         progress = self.desk.book.progress.get(shown.run)
         return hud_text(shown, self.clock.time, progress, self.recalculated, notice)
+
+    def _click_reach(self) -> float:
+        """How far on the ground looked at a click may miss [m]."""
+        if self.camera_work is None:
+            return 0.0
+        camera = self.camera_work.camera
+        return CLICK_REACH * 2.0 * camera.distance * math.tan(0.5 * camera.fov_y)
 
     def _data_age(self) -> float | None:
         age = self.desk.data_age(wall_clock.monotonic())
@@ -344,7 +356,7 @@ class ViewerApp:
         self.playback.fit_speed(shown.info.duration)
 
     def _make_status(self) -> ViewStatus:
-        status = program_status(self.desk, self.clock, self.control.editing.drawing, self.message)
+        status = program_status(self.desk, self.clock, self.control.editing, self.message)
         received = self.desk.connection.received_bytes
         status = dataclasses.replace(
             status,

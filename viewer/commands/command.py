@@ -16,10 +16,27 @@ from viewer.commands.camera import (
 from viewer.commands.edits import (
     AddVertex,
     BeginEdit,
+    BeginLevelPick,
+    BeginSelect,
     CancelEdit,
+    ChangeEdit,
     ChangeEditSettings,
+    DeleteEdit,
+    DragEdit,
+    DropEdit,
+    DropVertex,
+    EndStroke,
     FinishEdit,
+    GrabEdit,
+    LoadEdits,
+    MoveEdit,
+    MoveVertex,
     Redo,
+    RenameEdit,
+    SaveEdits,
+    SelectEdit,
+    StrokeTo,
+    TakeLevel,
     Undo,
 )
 from viewer.commands.picture import (
@@ -75,8 +92,25 @@ Command = (
     | ChangeEditSettings
     | BeginEdit
     | AddVertex
+    | DropVertex
+    | StrokeTo
+    | EndStroke
     | FinishEdit
     | CancelEdit
+    | BeginSelect
+    | SelectEdit
+    | GrabEdit
+    | DragEdit
+    | DropEdit
+    | MoveEdit
+    | MoveVertex
+    | ChangeEdit
+    | RenameEdit
+    | DeleteEdit
+    | BeginLevelPick
+    | TakeLevel
+    | SaveEdits
+    | LoadEdits
     | Undo
     | Redo
     | GrabView

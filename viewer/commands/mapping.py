@@ -54,6 +54,8 @@ def _checked(where: str, value: Any, annotation: str) -> Any:
     elif isinstance(value, (int, float)):
         if "float" in allowed and math.isfinite(value):
             return float(value)
+        if "int" in allowed and isinstance(value, int):
+            return value
     elif isinstance(value, str) and "str" in allowed:
         return value
     raise CommandError(f"{where} = {value!r} is not allowed; it must be {annotation} and finite")

@@ -6,14 +6,14 @@ Recalculate is what will be computed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from protocol import Edit, GridGeometry, apply_edits, rasterise_edit
-from viewer.world.heightfield import Rect, union_rect
+from protocol import Edit, EditError, GridGeometry, apply_edits, rasterise_edit
+from viewer.world.heightfield import Heightfield, Rect, union_rect
 
 __all__ = ["EditDocument", "EditPreview"]
 
@@ -73,6 +73,11 @@ class EditDocument:
         return self._base
 
     @property
+    def bed(self) -> npt.NDArray[np.float32]:
+        """The bed with the service's list on it [m]."""
+        return self._committed
+
+    @property
     def draft(self) -> Edit | None:
         """The edit being drawn, if any."""
         return self._draft
@@ -118,6 +123,28 @@ class EditDocument:
         if edit is not None:
             self._covered(edit)
         self._draft, self._draft_changed = edit, True
+
+    def edit(self, name: str) -> Edit:
+        """The edit of an id in the service's list.
+
+        Raises:
+            protocol.EditError: there is none.
+        """
+        for edit in self.edits:
+            if edit.id == name:
+                return edit
+        raise EditError(f"Edit {name!r} is not in the list; the id of one that is in it is allowed.")
+
+    def ground(self, name: str | None = None) -> Callable[[float, float], float]:
+        """The ground that an edit of the list changes, or that a new one would, as a function of x and y [m].
+
+        Args:
+            name: its id; None for a new edit at the end of the list.
+        """
+        before = self.edits
+        if name is not None:
+            before = before[: before.index(self.edit(name))]
+        return Heightfield(self._grid, self.bed_of(before)).sample
 
     def bed_of(self, edits: Sequence[Edit]) -> npt.NDArray[np.float32]:
         """The bed of a run that was computed with a list of edits [m, datum-relative]."""

@@ -37,7 +37,7 @@ def simplified(points: Sequence[Place], tolerance: float) -> list[Place]:
             middle = first + 1 + farthest
             kept[middle] = True
             open_parts += [(first, middle), (middle, last)]
-    return [points[at] for at in np.flatnonzero(kept)]
+    return [point for point, is_kept in zip(points, kept, strict=True) if is_kept]
 
 
 def distance_to_line(points: Sequence[Place], at: Place) -> float:
@@ -75,4 +75,5 @@ def _distances(
     length2 = float(along @ along)
     share = np.clip((places - start) @ along / length2, 0.0, 1.0) if length2 > 0.0 else np.zeros(len(places))
     away = places - start - share[:, None] * along
-    return np.sqrt((away * away).sum(axis=1))
+    distances: npt.NDArray[np.float64] = np.sqrt((away * away).sum(axis=1))
+    return distances

@@ -2,7 +2,17 @@
 
 from tests.viewer.app.conftest import Flight
 from tests.viewer.tiny_service import FRAMES, INTERVAL
-from viewer.commands import AddVertex, BeginEdit, ChangeEditSettings, FinishEdit, Pause, Recalculate, Seek
+from viewer.commands import (
+    AddVertex,
+    BeginEdit,
+    ChangeEdit,
+    ChangeEditSettings,
+    FinishEdit,
+    Pause,
+    Recalculate,
+    RenameEdit,
+    Seek,
+)
 
 
 def levee_of(flight: Flight, magnitude: float) -> None:
@@ -29,7 +39,8 @@ def test_a_high_levee_is_not_reported(flight: Flight) -> None:
 def test_a_low_levee_is_reported_with_time_and_place(flight: Flight) -> None:
     levee_of(flight, 1.0)
     (row,) = flight.app.fresh_status().edits
-    found = flight.app._levee_watch.overtopping(flight.shown, row.id)
+    (edit,) = flight.shown.document.edits
+    found = flight.app._levee_watch.overtopping(flight.shown, edit)
 
     assert found is not None
     assert found.time == 10 * INTERVAL
@@ -50,3 +61,20 @@ def test_the_past_before_the_levee_does_not_count(flight: Flight) -> None:
 
     assert not row.is_applied
     assert row.warning == ""
+
+
+def test_what_was_seen_before_a_levee_was_raised_does_not_count_but_its_name_does_not_matter(
+    flight: Flight,
+) -> None:
+    levee_of(flight, 1.0)
+    flight.do(RenameEdit("Low", flight.shown.document.edits[0].id))
+    flight.until(lambda: not flight.app.is_busy)
+    (row,) = flight.app.fresh_status().edits
+    assert row.warning.startswith("overtopped")
+    assert row.is_applied
+    flight.do(ChangeEdit(magnitude=9.0, edit=row.id))
+    flight.until(lambda: not flight.app.is_busy)
+    (row,) = flight.app.fresh_status().edits
+
+    assert row.warning == ""
+    assert not row.is_applied

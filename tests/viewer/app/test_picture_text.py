@@ -1,13 +1,10 @@
 import protocol
-from tests.viewer.app.test_run_book import edit, info
+from tests.viewer.app.test_run_book import info
 from tests.viewer.tiny_service import valley
-from viewer.app.edit_drawing import EditDrawing
-from viewer.app.levee_watch import LeveeWatch
-from viewer.app.picture_text import edit_overlay, edit_rows, hud_text, loss_notice, readout
+from viewer.app.picture_text import hud_text, loss_notice, readout
 from viewer.app.recalculation import Recalculation
 from viewer.app.shown_run import ShownRun
 from viewer.net import FrameLoader
-from viewer.render import LineStyle
 from viewer.world import ProbeReading
 
 
@@ -38,31 +35,6 @@ def test_a_branch_says_from_when_and_how_fast_it_came() -> None:
 
     assert "recalculated from 00:00:40, first frame after 0.38 s" in text.detail
     assert "43 x real time, volume error 2.5e-08" in text.detail
-
-
-def test_the_line_being_drawn_lies_on_the_ground_with_the_edits() -> None:
-    run = shown(info("a"))
-    drawing = EditDrawing()
-    assert edit_overlay(run, drawing) is None
-    run.document.mirror(1, [edit("one")], True, False)
-    drawing.begin()
-    drawing.vertices = [(1100.0, 2100.0)]
-    drawing.hover = (1200.0, 2200.0)
-    overlay = edit_overlay(run, drawing)
-
-    assert overlay is not None
-    assert [line.style for line in overlay.lines] == [LineStyle.RAISE, LineStyle.DRAFT]
-    assert overlay.lines[1].vertices == ((1100.0, 2100.0), (1200.0, 2200.0))
-    assert overlay.sign.max() == 1
-
-
-def test_an_edit_counts_as_computed_only_when_the_run_has_it() -> None:
-    run = shown(info("a"))
-    run.document.mirror(1, [edit("one"), edit("two")], True, False)
-    rows = edit_rows(run, [edit("one")], LeveeWatch())
-
-    assert [(row.id, row.is_applied, row.warning) for row in rows] == [("one", True, ""), ("two", False, "")]
-    assert all(" m long, " in row.measure and row.measure.endswith(" m\u00b3 of fill") for row in rows)
 
 
 def test_a_reading_becomes_a_readout() -> None:

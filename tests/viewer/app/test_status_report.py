@@ -9,7 +9,7 @@ def test_the_program_part_needs_no_run() -> None:
     flight = Flight(TinyService(), start=False)
     flight.until(lambda: flight.app.desk.is_open and bool(flight.app.desk.book.cases))
     app = flight.app
-    status = program_status(app.desk, app.clock, app.control.editing.drawing, "hello")
+    status = program_status(app.desk, app.clock, app.control.editing, "hello")
 
     assert (status.is_connected, status.message, status.shown_run) == (True, "hello", None)
     assert [row.name for row in status.cases] == ["tiny"]
@@ -18,7 +18,7 @@ def test_the_program_part_needs_no_run() -> None:
 
 def test_the_run_part_says_what_can_be_done_now(flight: Flight) -> None:
     app = flight.app
-    status = program_status(app.desk, app.clock, app.control.editing.drawing, "")
+    status = program_status(app.desk, app.clock, app.control.editing, "")
     made = run_status(status, flight.shown, app.desk, None, LeveeWatch())
 
     assert (made.can_recalculate, made.can_undo, made.is_recalculating) == (True, False, False)

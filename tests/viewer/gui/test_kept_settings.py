@@ -42,7 +42,7 @@ def test_what_is_kept_comes_back_from_the_file(path: Path) -> None:
 
     assert again.options() == {"exaggeration": 3.0, "wireframe": True}
     assert not again.map_shown()
-    assert again.edit_settings() == ChangeEditSettings(25.0, 3.0, "lower", "replace")
+    assert again.edit_settings() == ChangeEditSettings(25.0, 3.0, "lower", "replace", 0.0, False)
     assert again.views("Dam / break") == {"Dam": VIEW}
     assert again.views("Other") == {}
 
@@ -104,7 +104,7 @@ def test_a_window_opened_again_looks_as_it_was_left(
     again = settings(path)
 
     assert again.options()["exaggeration"] == 2.0
-    assert again.edit_settings() == ChangeEditSettings(75.0, 8.0, "raise", "modulate")
+    assert again.edit_settings() == ChangeEditSettings(75.0, 8.0, "raise", "modulate", 0.0, False)
     (view,) = again.views(title).values()
     assert opened.app.camera_work is not None
     assert view == opened.app.camera_work.pose()
