@@ -16,7 +16,14 @@ from protocol.channel_codec import (
     decode_channel,
     encode_channel,
 )
-from protocol.client_session import ChannelReceived, ClientEvent, ClientSession, SessionState, TerrainReceived
+from protocol.client_session import (
+    ChannelReceived,
+    ClientEvent,
+    ClientSession,
+    ImageryReceived,
+    SessionState,
+    TerrainReceived,
+)
 from protocol.codec import operation, pack, unpack_channel, unpack_client, unpack_frame, unpack_server
 from protocol.depth_codec import choose_depth_scale, depth_error_bound, dequantise_depth, quantise_depth
 from protocol.edits import (
@@ -73,9 +80,12 @@ from protocol.messages import (
     Frame,
     FramePart,
     GetChannel,
+    GetImagery,
     GetTerrain,
     GridInfo,
     Hello,
+    ImageryPart,
+    Layer,
     LineageEntry,
     ListCases,
     ListRuns,
@@ -169,12 +179,16 @@ __all__ = [
     "FrameError",
     "FramePart",
     "GetChannel",
+    "GetImagery",
     "GetTerrain",
     "GridError",
     "GridGeometry",
     "GridInfo",
     "Hello",
+    "ImageryPart",
+    "ImageryReceived",
     "InvalidMessage",
+    "Layer",
     "LineageEntry",
     "ListCases",
     "ListRuns",

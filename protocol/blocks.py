@@ -7,9 +7,11 @@ so that it is sent once. The last block of a ragged side is smaller.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +25,7 @@ BoolArray = npt.NDArray[np.bool_]
 UInt8Array = npt.NDArray[np.uint8]
 UInt16Array = npt.NDArray[np.uint16]
 IntArray = npt.NDArray[np.int64]
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 class BlockState(IntEnum):
@@ -123,6 +126,39 @@ class BlockLayout:
         """Number of cells whose owner block is not DRY."""
         active = np.asarray(states).reshape(self.shape) != BlockState.DRY
         return int((active * self._row_counts[:, None] * self._col_counts).sum())
+
+    def gather(self, raster: npt.NDArray[Scalar], states: npt.ArrayLike) -> npt.NDArray[Scalar]:
+        """The values of the cells that `owned_mask` names, in row-major order, shape [owned_count]."""
+        cells = np.empty(self.owned_count(states), raster.dtype)
+        for part, rows, columns in self._stretches(cells, states):
+            part[...] = raster[rows, columns]
+        return cells
+
+    def scatter(
+        self, cells: npt.NDArray[Scalar], states: npt.ArrayLike, raster: npt.NDArray[Scalar]
+    ) -> None:
+        """Put gathered values back into a raster; its other cells stay as they are."""
+        for part, rows, columns in self._stretches(cells, states):
+            raster[rows, columns] = part
+
+    def _stretches(
+        self, cells: npt.NDArray[Scalar], states: npt.ArrayLike
+    ) -> Iterator[tuple[npt.NDArray[Scalar], slice, slice]]:
+        """Views of gathered cells, each a rectangle of the grid: side by side blocks that are not DRY."""
+        active = np.asarray(states).reshape(self.shape) != BlockState.DRY
+        edges = np.diff(active, axis=1, prepend=False, append=False)
+        starts = np.append(0, np.cumsum(self._col_counts)).tolist()
+        row = offset = 0
+        for block_row, row_count in enumerate(self._row_counts.tolist()):
+            turns = [starts[block_col] for block_col in np.flatnonzero(edges[block_row]).tolist()]
+            width = sum(turns[1::2]) - sum(turns[::2])
+            band = cells[offset : offset + row_count * width].reshape(row_count, width)
+            column = 0
+            for west, east in zip(turns[::2], turns[1::2], strict=True):
+                yield band[:, column : column + east - west], slice(row, row + row_count), slice(west, east)
+                column += east - west
+            row += row_count
+            offset += band.size
 
     @cached_property
     def _row_counts(self) -> IntArray:

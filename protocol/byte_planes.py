@@ -10,22 +10,30 @@ import numpy as np
 
 from protocol.blocks import UInt8Array, UInt16Array
 
+_ONE, _EIGHT = np.uint16(1), np.uint16(8)
+
 
 def to_planes(numbers: UInt16Array) -> UInt8Array:
     """The planes of n numbers, uint8 [2 n]; signed numbers go as their uint16 pattern."""
-    differences = np.diff(numbers, prepend=np.uint16(0))
-    zigzag = (differences << np.uint16(1)) ^ (differences.view(np.int16) >> 15).view(np.uint16)
+    zigzag = numbers.copy()
+    zigzag[1:] -= numbers[:-1]
+    signs = (zigzag.view(np.int16) >> np.int16(15)).view(np.uint16)
+    zigzag <<= _ONE
+    zigzag ^= signs
     planes = np.empty((2, numbers.size), np.uint8)
     planes[0] = zigzag  # the cast keeps the low byte
-    planes[1] = zigzag >> np.uint16(8)
+    np.right_shift(zigzag, _EIGHT, out=planes[1], casting="unsafe")
     return planes.reshape(-1)
 
 
 def from_planes(planes: UInt8Array) -> UInt16Array:
     """The numbers of planes of an even number of bytes."""
     low, high = planes.reshape(2, -1)
-    zigzag = high.astype(np.uint16)
-    zigzag <<= np.uint16(8)
-    zigzag |= low
-    differences = (zigzag >> np.uint16(1)) ^ (np.uint16(0) - (zigzag & np.uint16(1)))
-    return np.cumsum(differences, dtype=np.uint16)
+    numbers = high.astype(np.uint16)
+    numbers <<= _EIGHT
+    numbers |= low
+    signs = numbers & _ONE
+    np.negative(signs, out=signs)
+    numbers >>= _ONE
+    numbers ^= signs
+    return np.cumsum(numbers, dtype=np.uint16, out=numbers)

@@ -8,7 +8,13 @@ from enum import IntEnum
 from protocol.codec import operation, pack, unpack_channel, unpack_frame, unpack_server
 from protocol.depth_codec import FloatArray
 from protocol.errors import InvalidMessage, Overloaded, SequenceError, VersionMismatch
-from protocol.limits import MAX_CHANNEL_BYTES, MAX_FRAME_BYTES, MAX_PENDING_COMMANDS, MAX_TERRAIN_BYTES
+from protocol.limits import (
+    MAX_CHANNEL_BYTES,
+    MAX_FRAME_BYTES,
+    MAX_IMAGERY_BYTES,
+    MAX_PENDING_COMMANDS,
+    MAX_TERRAIN_BYTES,
+)
 from protocol.messages import (
     Ack,
     CaseList,
@@ -20,6 +26,8 @@ from protocol.messages import (
     Frame,
     FramePart,
     Hello,
+    ImageryPart,
+    Layer,
     ResumePoint,
     RunList,
     ServerMessage,
@@ -67,7 +75,24 @@ class ChannelReceived:
     channel: Channel
 
 
-ClientEvent = ServerMessage | TerrainReceived | ChannelReceived
+@dataclass(frozen=True)
+class ImageryReceived:
+    """A picture of the terrain, put together from its parts and not unpacked.
+
+    Attributes:
+        id: id of the `get_imagery` command.
+        run: id of the run.
+        layer: which picture.
+        data: the bytes of a JPEG ("imagery") or PNG ("walls") file.
+    """
+
+    id: int
+    run: str
+    layer: Layer
+    data: bytes
+
+
+ClientEvent = ServerMessage | TerrainReceived | ChannelReceived | ImageryReceived
 
 
 class ClientSession:
@@ -94,6 +119,7 @@ class ClientSession:
         self._hello_sent = False
         self._frame_parts = PartAssembler("frame", MAX_FRAME_BYTES)
         self._terrain_parts = PartAssembler("terrain", MAX_TERRAIN_BYTES)
+        self._imagery_parts = PartAssembler("picture", MAX_IMAGERY_BYTES)
         self._channel_parts = PartAssembler("channel", MAX_CHANNEL_BYTES)
 
     def open(self, resume: ResumePoint | None = None) -> bytes:
@@ -141,7 +167,8 @@ class ClientSession:
     def receive(self, data: bytes) -> list[ClientEvent]:
         """What one message of the service means: no event for a part, else one.
 
-        Frames come whole as `Frame`, terrain as `TerrainReceived`, channels as `ChannelReceived`.
+        Frames come whole as `Frame`, terrain as `TerrainReceived`, channels as `ChannelReceived`,
+        pictures of the terrain as `ImageryReceived`.
 
         Raises:
             ProtocolError: when the service breaks the protocol; close the connection with its close_code.
@@ -158,6 +185,10 @@ class ClientSession:
             return self._add_frame_part(message)
         if isinstance(message, Terrain):
             return self._add_terrain_part(message)
+        if isinstance(message, ImageryPart):
+            identity = (message.id, message.run, message.layer)
+            whole = self._imagery_parts.add(identity, message.part, message.parts, message.data)
+            return [] if whole is None else [ImageryReceived(message.id, message.run, message.layer, whole)]
         if isinstance(message, ChannelPart):
             whole = self._channel_parts.add(message.id, message.part, message.parts, message.data)
             return [] if whole is None else [ChannelReceived(message.id, unpack_channel(whole))]

@@ -24,6 +24,12 @@ MAX_FRAME_BYTES = 2 * MAX_CELLS + (1 << 20)
 MAX_TERRAIN_BYTES = 4 * MAX_CELLS + (1 << 20)
 """Largest compressed terrain, put together from its parts."""
 
+MAX_IMAGERY_BYTES = 32 << 20
+"""Largest picture of the terrain, put together from its parts."""
+
+MAX_IMAGERY_SIDE = 4096
+"""Most pixels along a side of a colour picture of the terrain."""
+
 MAX_STATE_BYTES = 1 << 15
 """Largest packed block states of one frame (two bits a block)."""
 

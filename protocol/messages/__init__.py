@@ -24,6 +24,7 @@ from protocol.messages.flow import Credit, Seek, Subscribe, SubscriptionMode, Un
 from protocol.messages.forcing import ChangeForcing, ForcingChanged
 from protocol.messages.frames import Frame, FramePart
 from protocol.messages.handshake import Hello, ResumePoint, Welcome, WireLimits
+from protocol.messages.imagery import GetImagery, ImageryPart, Layer
 from protocol.messages.presenting import PresentView, View, ViewPresented
 from protocol.messages.runs import (
     DeleteRun,
@@ -57,6 +58,7 @@ ClientMessage = (
     | ResumeRun
     | StopRun
     | GetTerrain
+    | GetImagery
     | GetChannel
     | Subscribe
     | Unsubscribe
@@ -89,6 +91,7 @@ ServerMessage = (
     | RunBranched
     | Terrain
     | ChannelPart
+    | ImageryPart
     | EditsChanged
     | ForcingChanged
     | Frame
@@ -125,9 +128,12 @@ __all__ = [
     "Frame",
     "FramePart",
     "GetChannel",
+    "GetImagery",
     "GetTerrain",
     "GridInfo",
     "Hello",
+    "ImageryPart",
+    "Layer",
     "LineageEntry",
     "ListCases",
     "ListRuns",

@@ -26,6 +26,7 @@ from protocol.forcing import ForcingChange
 from protocol.grid import GridGeometry
 from protocol.limits import MAX_CELLS, MAX_FORCING_CHANGES
 from protocol.messages.channels import ChannelName
+from protocol.messages.imagery import Layers
 
 Forcing = Annotated[tuple[ForcingChange, ...], Meta(max_length=MAX_FORCING_CHANGES)]
 RunStatus = Literal["starting", "running", "paused", "finished", "stopped", "failed"]
@@ -253,9 +254,10 @@ class RunInfo(WireStruct, frozen=True):
         pinned: whether it is kept whatever the budget of the store.
         forcing_revision: revision of its working forcing.
         channels: what it keeps beside the depth, for `get_channel`.
+        layers: pictures of its terrain, for `get_imagery`.
     """
 
-    left_out: ClassVar[tuple[str, ...]] = ("forcing_revision", "channels")
+    left_out: ClassVar[tuple[str, ...]] = ("forcing_revision", "channels", "layers")
 
     run: Identifier
     case: Name
@@ -280,6 +282,7 @@ class RunInfo(WireStruct, frozen=True):
     pinned: bool = False
     forcing_revision: Revision = 0
     channels: Channels = ()
+    layers: Layers = ()
 
 
 class RunList(Message, frozen=True):

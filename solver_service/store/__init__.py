@@ -22,7 +22,7 @@ from solver_service.store.records import (
 from solver_service.store.retention import Removal, StoredRun, plan_removals
 from solver_service.store.room import free_bytes, has_room
 from solver_service.store.run_database import RunDatabase
-from solver_service.store.terrain_files import load_bed, save_bed
+from solver_service.store.terrain_files import load_bed, load_layer, save_bed, save_layer
 
 __all__ = [
     "CaseShelf",
@@ -53,10 +53,12 @@ __all__ = [
     "has_room",
     "is_scattered",
     "load_bed",
+    "load_layer",
     "mend_run",
     "plan_removals",
     "remove_checkpoint",
     "remove_run_files",
     "repair",
     "save_bed",
+    "save_layer",
 ]

@@ -12,7 +12,9 @@ import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
+from typing import get_args
 
+from protocol import Layer
 from solver_service.errors import StoreError
 from solver_service.store.data_folder import DataFolder, fsync_file, fsync_folder
 from solver_service.store.integrity import find_faults
@@ -98,6 +100,9 @@ def _copy_files(folder: DataFolder, copy: DataFolder, rows: RunDatabase) -> str:
         terrain = copy.terrain(run.case_fingerprint)
         if not terrain.exists():
             shutil.copyfile(folder.terrain(run.case_fingerprint), terrain)
+        for picture in folder.root.glob(f"terrain/{run.case_fingerprint}.*"):
+            if picture.suffix.removeprefix(".") in get_args(Layer):
+                shutil.copyfile(picture, copy.root / "terrain" / picture.name)
     for path in (*copy.root.glob("frames/*/*"), *copy.root.glob("checkpoints/*/*")):
         if path not in wanted:  # of an attempt before
             shutil.rmtree(path) if path.is_dir() else path.unlink()

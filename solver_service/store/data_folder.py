@@ -19,6 +19,7 @@ from types import TracebackType
 
 import platformdirs
 
+from protocol import Layer
 from solver_service.errors import StoreError
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}\Z")
@@ -82,6 +83,10 @@ class DataFolder:
     def terrain(self, fingerprint: str) -> Path:
         """File of a base bed."""
         return self.root / "terrain" / f"{_checked(fingerprint)}.zst"
+
+    def layer(self, fingerprint: str, layer: Layer) -> Path:
+        """File of a picture of the terrain whose base bed has that name."""
+        return self.root / "terrain" / f"{_checked(fingerprint)}.{layer}"
 
     def case(self, name: str) -> Path:
         """Folder of an uploaded case."""

@@ -1,4 +1,7 @@
-"""Base beds on disk: lossless float32, zstd, one file per fingerprint, the very bytes that go on the wire."""
+"""Terrains on disk, the very bytes that go on the wire, named by the fingerprint of their bed.
+
+A base bed is lossless float32 in zstd; the pictures that belong to it are a JPEG and a PNG.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ import numpy as np
 import zstandard
 from numpy.typing import NDArray
 
+from protocol import Layer
 from solver_service.errors import StoreError
 from solver_service.store.data_folder import DataFolder, fsync_folder
 
@@ -27,18 +31,8 @@ def save_bed(folder: DataFolder, fingerprint: str, z_b: NDArray[np.float32]) -> 
     path = folder.terrain(fingerprint)
     if path.exists():
         return path
-    temporary = path.with_name(f"{fingerprint}.{os.getpid()}.writing")
     packed = zstandard.ZstdCompressor(level=3).compress(np.ascontiguousarray(z_b, np.float32).tobytes())
-    try:
-        with temporary.open("wb") as file:
-            file.write(packed)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-        fsync_folder(path.parent)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        raise StoreError(f"terrain {path} cannot be written: {error.strerror or error}") from error
+    _write(path, packed)
     return path
 
 
@@ -48,7 +42,50 @@ def load_bed(folder: DataFolder, fingerprint: str) -> bytes:
     Raises:
         StoreError: there is none.
     """
-    path = folder.terrain(fingerprint)
+    return _read(folder.terrain(fingerprint))
+
+
+def save_layer(folder: DataFolder, fingerprint: str, layer: Layer, picture: bytes) -> Path:
+    """Write a picture of a terrain over the one before; complete or absent, never half.
+
+    Args:
+        folder: the data folder.
+        fingerprint: name of the bed.
+        layer: which picture.
+        picture: the bytes of its file.
+
+    Returns:
+        The file.
+    """
+    path = folder.layer(fingerprint, layer)
+    _write(path, picture)
+    return path
+
+
+def load_layer(folder: DataFolder, fingerprint: str, layer: Layer) -> bytes:
+    """A picture of a terrain as stored.
+
+    Raises:
+        StoreError: there is none.
+    """
+    return _read(folder.layer(fingerprint, layer))
+
+
+def _write(path: Path, data: bytes) -> None:
+    temporary = path.with_name(f"{path.name}.{os.getpid()}.writing")
+    try:
+        with temporary.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+        fsync_folder(path.parent)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise StoreError(f"terrain {path} cannot be written: {error.strerror or error}") from error
+
+
+def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:

@@ -120,6 +120,8 @@ CLIENT_EXAMPLES: dict[str, Message] = {
     "resume_run": p.ResumeRun(5, "r-1"),
     "stop_run": p.StopRun(6, "r-1"),
     "get_terrain": p.GetTerrain(7, "r-1"),
+    "get_imagery": p.GetImagery(30, "r-1"),
+    "get_imagery-walls": p.GetImagery(31, "r-1", "walls"),
     "get_channel": p.GetChannel(29, "r-1", 33, "velocity"),
     "start_run-channels": p.StartRun(30, "jacksboro", channels=("maxima",)),
     "subscribe": p.Subscribe(8, "r-1", 0, "live", 2),
@@ -169,6 +171,7 @@ SERVER_EXAMPLES: dict[str, Message] = {
     "edits_changed": p.EditsChanged("r-1", 2, (LINE, AREA), True, False),
     "edits_changed-undone": p.EditsChanged("r-1", 4, (NAMED,), True, True, (AREA,)),
     "frame": p.Frame("r-1", 33, 330.0, 1, 32, 0.001, b"\x1b\x02", 6, 0xDEADBEEF, bytes(range(12))),
+    "imagery_part": p.ImageryPart(30, "r-1", "imagery", 0, 2, bytes(range(8))),
     "channel_part": p.ChannelPart(29, 0, 2, bytes(range(8))),
     "run_changed-channels": p.RunChanged(structs.replace(RUN, channels=("velocity", "maxima"))),
     "frame-breached": p.Frame(

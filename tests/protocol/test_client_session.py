@@ -1,3 +1,4 @@
+import msgspec
 import numpy as np
 import pytest
 
@@ -187,6 +188,20 @@ def test_a_channel_comes_whole_from_its_parts(rng: np.random.Generator) -> None:
     assert p.pack(received.channel) == packed
     with pytest.raises(p.SequenceError):
         connection.tell(parts[1])
+
+
+def test_a_picture_comes_whole_from_its_parts(rng: np.random.Generator) -> None:
+    connection = connect()
+    command = p.GetImagery(connection.client.next_id(), "r")
+    connection.ask(command)
+    connection.tell(p.Ack(command.id))
+    data = rng.bytes(5)
+    parts = [p.ImageryPart(command.id, "r", "imagery", part, 2, data[3 * part :][:3]) for part in range(2)]
+    assert connection.tell(parts[0]) == []
+    assert connection.tell(parts[1]) == [p.ImageryReceived(command.id, "r", "imagery", data)]
+    connection.tell(parts[0])
+    with pytest.raises(p.SequenceError):
+        connection.tell(msgspec.structs.replace(parts[1], layer="walls"))
 
 
 def test_parts_that_hold_no_channel_are_refused() -> None:

@@ -6,7 +6,7 @@ import zstandard
 
 from solver_service.errors import StoreError
 from solver_service.store import DataFolder
-from solver_service.store.terrain_files import load_bed, save_bed
+from solver_service.store.terrain_files import load_bed, load_layer, save_bed, save_layer
 
 
 def test_a_bed_comes_back_bit_for_bit(tmp_path: Path, rng: np.random.Generator) -> None:
@@ -45,3 +45,16 @@ def test_a_bed_that_cannot_be_written_leaves_nothing_behind(
 def test_a_bed_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(StoreError, match=r"nothing\.zst cannot be read"):
         load_bed(DataFolder(tmp_path), "nothing")
+
+
+def test_a_picture_is_kept_beside_its_bed_and_replaced_whole(tmp_path: Path) -> None:
+    folder = DataFolder(tmp_path)
+    save_layer(folder, "f00d", "imagery", b"old")
+    save_layer(folder, "f00d", "imagery", b"new")
+    save_layer(folder, "f00d", "walls", b"mask")
+
+    assert load_layer(folder, "f00d", "imagery") == b"new"
+    assert load_layer(folder, "f00d", "walls") == b"mask"
+    assert len(list(folder.terrain("f00d").parent.iterdir())) == 2
+    with pytest.raises(StoreError, match="cannot be read"):
+        load_layer(folder, "beef", "walls")
