@@ -13,6 +13,7 @@ __all__ = [
     "EditSettings",
     "LegendRow",
     "PointReadout",
+    "PresenterRow",
     "RunRow",
     "ViewStatus",
     "clock_text",
@@ -138,6 +139,14 @@ class LegendRow:
 
 
 @dataclass(frozen=True)
+class PresenterRow:
+    """A session that shows its view to the others: its id and the name of its program."""
+
+    session: str
+    client: str
+
+
+@dataclass(frozen=True)
 class PointReadout:
     """Water and ground at a map point: depth [m], water level and ground elevation [m above the datum]."""
 
@@ -163,6 +172,9 @@ class ViewStatus:
         time: playback time [s].
         clock: clock time of the playback time in words, empty where the case has no clock.
         data_age: since the service was last heard [s]; None when it never was.
+        presenters: the sessions that show their view.
+        is_presenting: whether this viewer shows its view.
+        followed: session whose view is followed, None flies freely.
         revision: revision of the working list of edits.
         units: units of everything written.
         computed_until: time of the newest frame of the shown run [s].
@@ -206,6 +218,10 @@ class ViewStatus:
     branch_time: float | None = None
     is_playing: bool = False
     follows_live: bool = False
+    loops: bool = False
+    presenters: tuple[PresenterRow, ...] = ()
+    is_presenting: bool = False
+    followed: str | None = None
     playback_speed: float = 1.0
     is_drawing: bool = False
     drawn_vertices: int = 0

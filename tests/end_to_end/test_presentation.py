@@ -1,8 +1,44 @@
 """One shows where the water goes, the others follow."""
 
+import dataclasses
+import time
+from collections.abc import Callable
+
+import pytest
+
 import protocol
 from bench.service_process import ServiceClient, ServiceProcess
 from tests.end_to_end.test_controllers import session_of, start_paused
+from viewer.app.viewer_app import ViewerApp
+from viewer.commands import FlyTo, FollowView, PresentView, StartRun
+from viewer.net import ConnectionThread, FrameLoader
+
+
+class Viewer:
+    """The program behind a window, without one."""
+
+    def __init__(self, service: ServiceProcess) -> None:
+        connection = ConnectionThread(service.url, service.token)
+        self.app = ViewerApp(connection, FrameLoader())
+        connection.start()
+
+    def __enter__(self) -> "Viewer":
+        self.until(lambda: bool(self.app.desk.book.cases))
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.app.close()
+
+    def advance(self) -> None:
+        if self.app.advance(time.monotonic()) and self.app.frame_inputs() is not None:
+            self.app.note_painted((64, 36))
+
+    def until(self, condition: Callable[[], bool], timeout_s: float = 30.0) -> None:
+        end = time.monotonic() + timeout_s
+        while not condition():
+            assert time.monotonic() < end, f"waited in vain; the viewer says {self.app.message!r}"
+            self.advance()
+            time.sleep(0.005)
 
 
 def test_a_presented_view_reaches_all_others_also_those_who_come_later_and_ends_with_its_session(
@@ -23,3 +59,27 @@ def test_a_presented_view_reaches_all_others_also_those_who_come_later_and_ends_
         with ServiceClient(service) as late:
             assert late.first(protocol.ViewPresented).view == view
     assert client.first(protocol.ViewPresented, lambda event: event.view is None).session == told.session
+
+
+def test_a_viewer_that_follows_sees_what_the_presenting_one_sees(service: ServiceProcess, case: str) -> None:
+    with Viewer(service) as presenter, Viewer(service) as follower:
+        presenter.app.carry_out(StartRun(case, 20.0))
+        presenter.until(lambda: presenter.app.is_settled and presenter.app.shown is not None)
+        presenter.app.carry_out(FlyTo(300.0, 200.0, 500.0, 75.0, 35.0, seconds=0.0))
+        presenter.app.carry_out(PresentView())
+
+        def is_offered() -> bool:
+            presenter.advance()
+            return bool(follower.app.presenting.presenters)
+
+        follower.until(is_offered)
+        follower.app.carry_out(FollowView(follower.app.presenting.presenters[0].session))
+        follower.until(lambda: follower.app.shown is not None and follower.app.is_settled)
+        ours, theirs = presenter.app.view_pose(), follower.app.view_pose()
+
+        assert ours is not None
+        assert theirs is not None
+        assert follower.app.shown is not None
+        assert presenter.app.shown is not None
+        assert follower.app.shown.run == presenter.app.shown.run
+        assert dataclasses.astuple(theirs) == pytest.approx(dataclasses.astuple(ours), abs=0.5)

@@ -73,6 +73,7 @@ class TinyService:
         url: its address.
         computed: number of frames that are computed; tests raise it.
         is_streaming: whether frames are sent; tests hold them back.
+        presented: every view that a viewer presented.
         hellos: every hello that came, so that tests see what a viewer said when it came back.
     """
 
@@ -80,6 +81,7 @@ class TinyService:
         self.computed = computed
         self.is_streaming = True
         self.hellos: list[protocol.Hello] = []
+        self.presented: list[protocol.View | None] = []
         self.authorizations: list[str | None] = []
         self.runs: dict[str, TinyRun] = {}
         self.lock = threading.RLock()
@@ -218,6 +220,9 @@ class TinyService:
                     return self._recalculate(session, message)
                 case protocol.PauseRun() | protocol.ResumeRun() | protocol.StopRun():
                     return self._control(message)
+                case protocol.PresentView():
+                    self.presented.append(message.view)
+                    return [protocol.Ack(message.id)]
                 case protocol.Credit():
                     return []
                 case _:

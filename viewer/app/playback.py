@@ -10,6 +10,7 @@ from viewer.commands import (
     Command,
     CommandError,
     FollowLive,
+    Loop,
     Pause,
     Play,
     Seek,
@@ -59,6 +60,8 @@ class Playback:
                 if not (math.isfinite(factor) and factor > 0.0):
                     raise CommandError(f"SetSpeed.factor = {factor!r} is not allowed; it must be above 0")
                 self.clock.set_speed(factor)
+            case Loop(on):
+                self.clock.loops = on
             case FollowLive(on):
                 self.clock.follow_live() if on else self.clock.pause()
             case _:

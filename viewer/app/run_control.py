@@ -47,6 +47,8 @@ class RunControl:
         recalculated: the newest recalculation asked for.
         message: the newest sentence for the user.
         resuming: called before a run is taken up again.
+        presented: called with what another session shows of its view.
+        opened: called when a connection stands.
         is_stale: whether anything changed since somebody last looked; set True here, False by who looks.
     """
 
@@ -65,6 +67,8 @@ class RunControl:
         self.recalculated: Recalculation | None = None
         self.message = ""
         self.resuming: Callable[[], None] = lambda: None
+        self.presented: Callable[[protocol.ViewPresented], None] = lambda message: None
+        self.opened: Callable[[], None] = lambda: None
         self.is_stale = True
         self._loader = loader
         self._clock = clock
@@ -201,6 +205,7 @@ class RunControl:
         """Take up where the lost connection was, or start what was asked for at the beginning."""
         self.is_stale = True
         self.message = ""
+        self.opened()
         if self.shown is not None:
             self._subscribe(self.shown)
         elif self._autostart is not None:
@@ -222,6 +227,10 @@ class RunControl:
         if shown is None or message.run != shown.run:
             return
         self.editing.note_edits(message, shown)
+
+    def view_presented(self, message: protocol.ViewPresented) -> None:
+        """Another session shows its view, or no longer."""
+        self.presented(message)
 
     def terrain_came(self, message: protocol.TerrainReceived) -> None:
         """Show the run whose terrain was waited for."""

@@ -35,6 +35,9 @@ class ServiceListener(Protocol):
     def edits_changed(self, message: protocol.EditsChanged) -> None:
         """The working list of a run has changed."""
 
+    def view_presented(self, message: protocol.ViewPresented) -> None:
+        """A session shows its view, or no longer."""
+
     def terrain_came(self, message: protocol.TerrainReceived) -> None:
         """The base bed of a run is here."""
 
@@ -177,6 +180,10 @@ class ServiceDesk:
             lambda number: protocol.ReplaceEdit(number, run=run, edit=edit), "change the edit", done, refused
         )
 
+    def present_view(self, view: protocol.View | None) -> None:
+        """Ask to show a view to all other sessions; None ends it."""
+        self._link.send(lambda number: protocol.PresentView(number, view=view), "present the view")
+
     def delete_edit(self, run: str, edit: str, done: Reply, refused: Refusal) -> None:
         """Ask to take an edit out of the working list."""
         self._link.send(
@@ -237,6 +244,8 @@ class ServiceDesk:
                 self._listener.terrain_came(message)
             case protocol.Progress():
                 self.book.progress[message.run] = message
+            case protocol.ViewPresented():
+                self._listener.view_presented(message)
             case protocol.Notice():
                 self._listener.say(message.text)
 

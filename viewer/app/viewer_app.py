@@ -20,6 +20,7 @@ from viewer.app.picture_file import checked_order
 from viewer.app.picture_text import hud_text, loss_notice
 from viewer.app.playback import Playback
 from viewer.app.pointing import Pointing
+from viewer.app.presenting import Presenting
 from viewer.app.recalculation import Recalculation
 from viewer.app.run_control import RunControl
 from viewer.app.service_desk import ServiceDesk
@@ -120,6 +121,9 @@ class ViewerApp:
         self.control.resuming = self.comparison.return_stream
         self.control.editing.reach = self._click_reach
         self.control.editing.look = lambda x, y: self.pointing.readout(x, y, self.shown)
+        self.presenting = Presenting(self.control, self.clock)
+        self.control.presented = self.presenting.take
+        self.control.opened = self.presenting.forget
 
     @property
     def desk(self) -> ServiceDesk:
@@ -159,7 +163,8 @@ class ViewerApp:
         """
         self._picture_stale |= not isinstance(command, WITHOUT_PICTURE)
         if (
-            self.playback.carry_out(command)
+            self.presenting.carry_out(command)
+            or self.playback.carry_out(command)
             or self._steer(command)
             or self.control.editing.carry_out(command, self.shown)
         ):
@@ -208,6 +213,7 @@ class ViewerApp:
         self.control.is_stale = False
         changed = self._picture_stale or self._is_text_old(now)
         self._picture_stale = False
+        self.presenting.advance(self.camera_work, now)
         shown = self.shown
         if shown is not None and self.camera_work is not None:
             changed |= self.camera_work.advance(wall_dt)
@@ -363,6 +369,10 @@ class ViewerApp:
             units=self.options.units,
             data_age=self._data_age(),
             received_bytes=received,
+            presenters=self.presenting.presenters,
+            is_presenting=self.presenting.is_presenting,
+            followed=self.presenting.following,
+            loops=self.clock.loops,
             received_bit_s=self._traffic.note(received, wall_clock.monotonic()),
         )
         if self.shown is None:

@@ -51,12 +51,14 @@ from viewer.commands.picture import (
 )
 from viewer.commands.playback import (
     FollowLive,
+    Loop,
     Pause,
     Play,
     Seek,
     SetSpeed,
     TogglePlay,
 )
+from viewer.commands.presenting import FollowView, PresentView
 from viewer.commands.runs import (
     CompareWith,
     ConnectTo,
@@ -91,16 +93,19 @@ __all__ = [
     "FinishEdit",
     "FlyTo",
     "FollowLive",
+    "FollowView",
     "GrabEdit",
     "GrabView",
     "HoldMove",
     "LoadEdits",
+    "Loop",
     "MoveEdit",
     "MoveHover",
     "MoveVertex",
     "Pause",
     "PauseRun",
     "Play",
+    "PresentView",
     "ProbeAt",
     "Recalculate",
     "Reconnect",

@@ -47,12 +47,14 @@ from viewer.commands.picture import (
 )
 from viewer.commands.playback import (
     FollowLive,
+    Loop,
     Pause,
     Play,
     Seek,
     SetSpeed,
     TogglePlay,
 )
+from viewer.commands.presenting import FollowView, PresentView
 from viewer.commands.runs import (
     CompareWith,
     ConnectTo,
@@ -80,6 +82,9 @@ Command = (
     | Seek
     | SetSpeed
     | FollowLive
+    | Loop
+    | PresentView
+    | FollowView
     | ConnectTo
     | Reconnect
     | StartRun

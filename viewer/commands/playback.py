@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["FollowLive", "Pause", "Play", "Seek", "SetSpeed", "TogglePlay"]
+__all__ = ["FollowLive", "Loop", "Pause", "Play", "Seek", "SetSpeed", "TogglePlay"]
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,13 @@ class SetSpeed:
     """Play at `factor` simulated seconds per wall second."""
 
     factor: float
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Begin again at the start when playing reaches the end (or stop doing so)."""
+
+    on: bool = True
 
 
 @dataclass(frozen=True)

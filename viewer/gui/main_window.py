@@ -39,6 +39,7 @@ from viewer.gui.edit_panel import EditPanel
 from viewer.gui.kept_settings import KeptSettings
 from viewer.gui.picture_dialog import PictureDialog, ask_picture_path
 from viewer.gui.playback_bar import PlaybackBar
+from viewer.gui.presenting_menu import PresentingMenu
 from viewer.gui.reference_map import ReferenceMap
 from viewer.gui.run_panel import RunPanel
 from viewer.gui.scene_widget import SceneWidget
@@ -85,6 +86,7 @@ class MainWindow(QMainWindow):
         self.reference_map = ReferenceMap(self._dispatch, self.scene)
         self.scene.resized.connect(self._place_map)
         self.playback = PlaybackBar(self._dispatch)
+        self.playback.stepped.connect(self._step)
         self.edit_panel = EditPanel(self._dispatch)
         self.run_panel = RunPanel(self._dispatch)
         self.depth_plot = DepthPlot()
@@ -136,6 +138,7 @@ class MainWindow(QMainWindow):
             self.depth_plot.show_status(status)
             self.water_panel.show_status(status)
             self.connection_panel.show_status(status)
+            self.presenting_menu.show_status(status)
             self.setWindowTitle(f"{status.title or 'no run'} - Flood Emergency Visualizer")
             self.scene.setCursor(
                 Qt.CursorShape.CrossCursor if status.is_drawing else Qt.CursorShape.ArrowCursor
@@ -239,6 +242,8 @@ class MainWindow(QMainWindow):
         edits.addAction(self.edit_panel.recalculate)
         self.view_menu.add_first([self.water_panel.next_colour, self.water_panel.toggle_arrows])
         self.menuBar().addMenu(self.view_menu)
+        self.presenting_menu = PresentingMenu(self._dispatch, self)
+        self.menuBar().addMenu(self.presenting_menu)
         self.view_menu.add_docks(self.docks)
 
     def _action(self, menu: QMenu, text: str, shortcut: str | None, slot: Callable[[], object]) -> QAction:

@@ -11,6 +11,7 @@ from viewer.commands import (
     Command,
     CommandError,
     FollowLive,
+    Loop,
     Pause,
     Play,
     Seek,
@@ -82,3 +83,13 @@ def test_the_clock_runs_at_its_speed_up_to_the_frames_at_hand(playback: Playback
     assert playback.clock.time == 70.0
     playback.advance(shown, 60.0)
     assert playback.clock.time == 90.0  # the branch point; none of its own frames has come
+
+
+def test_playing_begins_again_at_the_end_when_it_loops(playback: Playback, shown: ShownRun) -> None:
+    playback.clock.set_speed(10.0)
+    playback.clock.seek(80.0)
+    for command in (Loop(), Play()):
+        assert playback.carry_out(command)
+    playback.advance(shown, 2.0)
+
+    assert playback.clock.time == 10.0

@@ -2,7 +2,7 @@ from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
 from tests.viewer.gui.conftest import Recorder
-from viewer.commands import FollowLive, Seek, SetSpeed, TogglePlay
+from viewer.commands import FollowLive, Loop, Seek, SetSpeed, TogglePlay
 from viewer.gui.playback_bar import PlaybackBar
 from viewer.view_status import ViewStatus
 
@@ -66,3 +66,17 @@ def test_an_unusual_speed_is_shown_too(qtbot: QtBot, record: Recorder) -> None:
     made.show_status(ViewStatus(shown_run="r", playback_speed=6.5))
 
     assert made.speed.currentText() == "6.5 x"
+
+
+def test_frames_are_stepped_and_playing_loops(qtbot: QtBot, record: Recorder) -> None:
+    made = bar(qtbot, record)
+    steps: list[int] = []
+    made.stepped.connect(steps.append)
+    for button in (made.back, made.forth):
+        qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+    qtbot.mouseClick(made.loop, Qt.MouseButton.LeftButton, pos=QPoint(6, made.loop.height() // 2))
+
+    assert steps == [-1, 1]
+    assert record.commands == [Loop(True)]
+    made.show_status(ViewStatus(shown_run="r", loops=True))
+    assert made.loop.isChecked()

@@ -86,9 +86,7 @@ def test_what_the_colour_shows_is_what_the_cell_holds_also_at_the_limits(
     assert share(-2e-6) > 0.005  # what is a hair below the limits must be told apart
 
 
-def test_a_film_too_thin_to_be_shown_has_no_class(
-    make_heightfield: Callable, make_stage: Callable
-) -> None:
+def test_a_film_too_thin_to_be_shown_has_no_class(make_heightfield: Callable, make_stage: Callable) -> None:
     stage = make_stage(make_heightfield(height=4.0), (300, 200))
     scale = water_scale(WaterColour.DEPTH, 1.0)
     assert scale is not None
