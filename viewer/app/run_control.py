@@ -12,6 +12,7 @@ from viewer.app.endpoint import read_token, stream_url
 from viewer.app.recalculation import Recalculation
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
+from viewer.app.terrain_pictures import TerrainPictures
 from viewer.commands import (
     Command,
     CommandError,
@@ -24,6 +25,7 @@ from viewer.commands import (
     StartRun,
     StopRun,
 )
+from viewer.errors import TerrainDataError
 from viewer.net import ConnectionThread, FrameLoader
 from viewer.world import PlaybackClock
 
@@ -75,6 +77,7 @@ class RunControl:
         self._new_terrain = new_terrain
         self._autostart = autostart
         self._awaited_run: str | None = None
+        self._pictures = TerrainPictures("")
         self._recalculate_wanted = False
 
     # --- what the user asks for -----------------------------------------------------------------------
@@ -237,9 +240,22 @@ class RunControl:
         info = self.desk.book.runs.get(message.run)
         if info is None or message.run != self._awaited_run:
             return
-        self._enter(ShownRun(info, message.z_b, self._loader))
+        shown = ShownRun(info, message.z_b, self._loader)
+        if self._pictures.run == message.run:
+            self._pictures.lay_on(shown.heightfield)
+        self._enter(shown)
         assert self.shown is not None
         self._new_terrain(self.shown)
+
+    def picture_came(self, message: protocol.ImageryReceived) -> None:
+        """Lay a picture on the terrain that it belongs to."""
+        info = self.desk.book.runs.get(message.run)
+        if info is None or message.run != self._pictures.run:
+            return
+        try:
+            self._pictures.take(message, (info.grid.nrows, info.grid.ncols))
+        except TerrainDataError as error:
+            self.say(str(error))
 
     def say(self, sentence: str) -> None:
         """Show a sentence in the status line."""
@@ -303,7 +319,8 @@ class RunControl:
             self._loader.add_run(entry.run, info.grid.nrows, info.grid.ncols)
         root = (info.lineage[0].run if info.lineage else info.run) if info.parent is not None else info.run
         if before is None or before.root != root:
-            self.desk.fetch_terrain(info.run)
+            self._pictures = TerrainPictures(info.run)
+            self.desk.fetch_terrain(info)
             return
         self._enter(ShownRun(info, before.document.base, self._loader, before.heightfield))
 

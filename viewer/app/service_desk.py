@@ -41,6 +41,9 @@ class ServiceListener(Protocol):
     def terrain_came(self, message: protocol.TerrainReceived) -> None:
         """The base bed of a run is here."""
 
+    def picture_came(self, message: protocol.ImageryReceived) -> None:
+        """A picture of the terrain of a run is here."""
+
     def say(self, sentence: str) -> None:
         """Show a sentence to the user."""
 
@@ -141,9 +144,15 @@ class ServiceDesk:
         """Ask to end a run."""
         self._link.send(lambda number: protocol.StopRun(number, run=run), "stop the run")
 
-    def fetch_terrain(self, run: str) -> None:
-        """Ask for the base bed of a run."""
+    def fetch_terrain(self, info: protocol.RunInfo) -> None:
+        """Ask for the base bed of a run, and for what pictures there are of it."""
+        run = info.run
+        # Walls are small and change how the ground is drawn, so they go ahead of it.
+        if "walls" in info.layers:
+            self._fetch_picture(run, "walls")
         self._link.send(lambda number: protocol.GetTerrain(number, run=run), "fetch the terrain")
+        if "imagery" in info.layers:
+            self._fetch_picture(run, "imagery")
 
     def subscribe(self, run: str, from_index: int, mode: protocol.SubscriptionMode) -> None:
         """Ask for the frames of a run from an index on."""
@@ -158,9 +167,7 @@ class ServiceDesk:
         """Ask the stream to go on from another frame."""
         self._link.send(lambda number: protocol.Seek(number, run=run, index=index), "fetch a frame")
 
-    def append_edits(
-        self, run: str, edits: Sequence[protocol.Edit], done: Reply, refused: Refusal
-    ) -> None:
+    def append_edits(self, run: str, edits: Sequence[protocol.Edit], done: Reply, refused: Refusal) -> None:
         """Ask to take edits into the working list, all or none."""
         one, *more = edits
         self._link.send(
@@ -211,6 +218,12 @@ class ServiceDesk:
         """End the connection."""
         self.connection.close()
 
+    def _fetch_picture(self, run: str, layer: protocol.Layer) -> None:
+        self._link.send(
+            lambda number: protocol.GetImagery(number, run=run, layer=layer),
+            f"fetch the {layer} of the terrain",
+        )
+
     def _handle(self, message: protocol.ClientEvent) -> None:
         match message:
             case protocol.Welcome():
@@ -242,6 +255,8 @@ class ServiceDesk:
                 self._listener.edits_changed(message)
             case protocol.TerrainReceived():
                 self._listener.terrain_came(message)
+            case protocol.ImageryReceived():
+                self._listener.picture_came(message)
             case protocol.Progress():
                 self.book.progress[message.run] = message
             case protocol.ViewPresented():

@@ -6,6 +6,7 @@ import dataclasses
 import math
 
 from viewer.commands import CommandError
+from viewer.lod import BLOCK_SIZES, Border
 from viewer.render import RenderOptions
 from viewer.units import UNITS
 from viewer.world import WaterColour
@@ -30,7 +31,13 @@ _NUMBERS = {
     "light_azimuth_deg": (0.0, 360.0),
     "light_elevation_deg": (5.0, 90.0),
 }
-OPTION_NAMES = (*_SWITCHES, *_NUMBERS, "water_colour", "units")
+_CHOICES: dict[str, dict[float | str, object]] = {
+    "water_colour": {colour.value: colour for colour in WaterColour},
+    "units": {name: units for name, units in UNITS.items()},
+    "block_size": {size: size for size in BLOCK_SIZES},
+    "border": {border.value: border for border in Border},
+}
+OPTION_NAMES = (*_SWITCHES, *_NUMBERS, *_CHOICES)
 
 
 def changed_options(options: RenderOptions, name: str, value: bool | float | str) -> RenderOptions:
@@ -39,17 +46,12 @@ def changed_options(options: RenderOptions, name: str, value: bool | float | str
     Raises:
         CommandError: an unknown name or a value that is not allowed.
     """
-    if name == "water_colour":
-        known = [colour.value for colour in WaterColour]
-        if value not in known:
-            raise CommandError(
-                f"option water_colour = {value!r} is not allowed; allowed are {', '.join(known)}"
-            )
-        return dataclasses.replace(options, water_colour=WaterColour(value))
-    if name == "units":
-        if isinstance(value, str) and value in UNITS:
-            return dataclasses.replace(options, units=UNITS[value])
-        raise CommandError(f"option units = {value!r} is not allowed; it must be {' or '.join(UNITS)}")
+    if name in _CHOICES:
+        allowed = _CHOICES[name]
+        if isinstance(value, bool) or value not in allowed:
+            known = ", ".join(str(choice) for choice in allowed)
+            raise CommandError(f"option {name} = {value!r} is not allowed; allowed are {known}")
+        return dataclasses.replace(options, **{name: allowed[value]})  # type: ignore[arg-type]
     if name in _SWITCHES and isinstance(value, bool):
         return dataclasses.replace(options, **{name: value})  # type: ignore[arg-type]
     if name in _NUMBERS and isinstance(value, (int, float)) and not isinstance(value, bool):

@@ -17,6 +17,10 @@ OptionValue = bool | float | str
 EXAGGERATIONS = (1.0, 1.5, 2.0, 3.0, 5.0)
 TAUS_PX = (0.5, 1.0, 2.0, 4.0, 8.0)
 CONTOUR_INTERVALS_M = (0.0, 5.0, 10.0, 20.0, 50.0)
+BLOCK_SIZES = (17.0, 33.0, 65.0)
+BORDERS = {"ragged": "Ragged blocks", "trim": "Trim", "pad": "Pad"}
+SUN_BEARINGS = ("North", "North-east", "East", "South-east", "South", "South-west", "West", "North-west")
+SUN_HEIGHTS_DEG = (10.0, 20.0, 30.0, 42.0, 60.0, 80.0)
 NUMBERED_VIEWS = 9
 
 
@@ -36,7 +40,7 @@ class ViewMenu(QMenu):
         super().__init__("&View", parent)
         self._dispatch = dispatch
         self._switches: dict[str, QAction] = {}
-        self._choices: dict[str, dict[float, QAction]] = {}
+        self._choices: dict[str, dict[OptionValue, QAction]] = {}
         self._action("Whole terrain", "R", lambda: dispatch(ResetView()))
         self._action("From above", "T", lambda: dispatch(TopView()))
         self._action("Keep this view", "Ctrl+K", keep_view)
@@ -46,7 +50,16 @@ class ViewMenu(QMenu):
         self._choice(
             "Contours", "contour_interval", CONTOUR_INTERVALS_M, 0.0, lambda v: f"{v:g} m" if v else "off"
         )
+        bearings = tuple(45.0 * number for number in range(len(SUN_BEARINGS)))
+        self._choice(
+            "Sun from", "light_azimuth_deg", bearings, 315.0, lambda v: SUN_BEARINGS[int(float(v) / 45.0)]
+        )
+        self._choice("Sun height", "light_elevation_deg", SUN_HEIGHTS_DEG, 42.0, lambda v: f"{v:g} deg")
+        self._switch("Imagery", "show_imagery", None, checked=True)
+        self.addSeparator()
         self._choice("Terrain error", "tau_px", TAUS_PX, 2.0, lambda v: f"{v:g} px")
+        self._choice("Vertices along a block", "block_size", BLOCK_SIZES, 33.0, lambda v: f"{v:g}")
+        self._choice("Border of the map", "border", tuple(BORDERS), "ragged", lambda v: BORDERS[str(v)])
         self._switch("Wireframe", "wireframe", "F")
         self._switch("Level-of-detail blocks", "show_blocks", None)
         self.addSeparator()
@@ -77,7 +90,7 @@ class ViewMenu(QMenu):
         for name, value in options.items():
             if name in self._switches and isinstance(value, bool):
                 self._switches[name].setChecked(value)
-            action = None if isinstance(value, str) else self._choices.get(name, {}).get(float(value))
+            action = None if isinstance(value, bool) else self._choices.get(name, {}).get(value)
             if action is not None and not action.isChecked():
                 action.trigger()
 
@@ -108,9 +121,10 @@ class ViewMenu(QMenu):
         action.triggered.connect(lambda: slot())
         return action
 
-    def _switch(self, text: str, option: str, shortcut: str | None) -> None:
+    def _switch(self, text: str, option: str, shortcut: str | None, checked: bool = False) -> None:
         action = self._action(text, shortcut, lambda: None)
         action.setCheckable(True)
+        action.setChecked(checked)
         action.toggled.connect(lambda on: self._dispatch(SetOption(option, on)))
         self._switches[option] = action
 
@@ -118,9 +132,9 @@ class ViewMenu(QMenu):
         self,
         text: str,
         option: str,
-        values: tuple[float, ...],
-        initial: float,
-        label: Callable[[float], str],
+        values: tuple[OptionValue, ...],
+        initial: OptionValue,
+        label: Callable[[OptionValue], str],
     ) -> None:
         menu = self.addMenu(text)
         group = QActionGroup(menu)

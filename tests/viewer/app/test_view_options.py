@@ -2,6 +2,7 @@ import pytest
 
 from viewer.app.view_options import OPTION_NAMES, changed_options
 from viewer.commands import CommandError
+from viewer.lod import Border
 from viewer.render import RenderOptions
 from viewer.world import WaterColour
 
@@ -13,6 +14,8 @@ def test_an_option_is_set_by_its_name() -> None:
     assert changed_options(options, "wireframe", True).wireframe
     assert changed_options(options, "water_colour", "hazard").water_colour is WaterColour.HAZARD
     assert changed_options(options, "flow_arrows", True).flow_arrows
+    assert changed_options(options, "block_size", 65.0).block_size == 65
+    assert changed_options(options, "border", "pad").border is Border.PAD
 
 
 def test_every_name_is_an_option_of_the_renderer() -> None:
@@ -30,6 +33,9 @@ def test_every_name_is_an_option_of_the_renderer() -> None:
         ("fog", "on"),
         ("water_colour", "taste"),
         ("water_colour", True),
+        ("block_size", 34),
+        ("block_size", True),
+        ("border", "cut"),
     ],
 )
 def test_a_wrong_value_is_refused(name: str, value: object) -> None:
