@@ -134,9 +134,7 @@ class BlockLayout:
             part[...] = raster[rows, columns]
         return cells
 
-    def scatter(
-        self, cells: npt.NDArray[Scalar], states: npt.ArrayLike, raster: npt.NDArray[Scalar]
-    ) -> None:
+    def scatter(self, cells: npt.NDArray[Scalar], states: npt.ArrayLike, raster: npt.NDArray[Scalar]) -> None:
         """Put gathered values back into a raster; its other cells stay as they are."""
         for part, rows, columns in self._stretches(cells, states):
             raster[rows, columns] = part

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import get_args
 
 import numpy as np
-import numpy.typing as npt
 
 from protocol.blocks import BlockLayout, UInt8Array, UInt16Array
 from protocol.byte_planes import from_planes, to_planes
@@ -112,13 +111,13 @@ def encode_channel(
     Raises:
         FrameError: when a field has another shape or holds a number that is not finite.
     """
-    mask = layout.owned_mask(states)
     planes, scales = [], []
     for name in CHANNEL_FIELDS[channel]:
         values = fields[name]
-        if values.shape != mask.shape:
-            raise FrameError(f"Field {name} has the shape {values.shape}; {mask.shape} is allowed.")
-        numbers, scale = _quantise(name, values[mask])
+        if values.shape != (layout.nrows, layout.ncols):
+            shape = (layout.nrows, layout.ncols)
+            raise FrameError(f"Field {name} has the shape {values.shape}; {shape} is allowed.")
+        numbers, scale = _quantise(name, layout.gather(values, states))
         planes.append(to_planes(numbers))
         scales.append(scale)
     raw = np.concatenate(planes).data.cast("B")
@@ -185,22 +184,23 @@ def decode_channel(layout: BlockLayout, packed: Channel) -> DecodedChannel:
     raw = decompress(packed.payload, raw_size, MAX_CHANNEL_BYTES)
     if zlib.crc32(raw) != packed.checksum:
         raise FrameError(f"{where} has the wrong checksum.")
-    mask = layout.owned_mask(states)
     planes = np.frombuffer(raw, np.uint8).reshape(len(names), 2 * count)
     fields = {
-        name: _field(name, from_planes(plane), scale, mask)
+        name: _field(name, from_planes(plane), scale, states, layout)
         for name, plane, scale in zip(names, planes, packed.scales, strict=True)
     }
     bounds = {name: 0.5 * scale for name, scale in zip(names, packed.scales, strict=True)}
     return DecodedChannel(packed.run, packed.index, packed.time, packed.channel, fields, bounds)
 
 
-def _field(name: str, numbers: UInt16Array, scale: float, mask: npt.NDArray[np.bool_]) -> FloatArray:
+def _field(
+    name: str, numbers: UInt16Array, scale: float, states: UInt8Array, layout: BlockLayout
+) -> FloatArray:
     values = numbers.view(np.int16) if name in SIGNED else numbers
-    field = np.zeros(mask.shape, np.float32)
+    field = np.zeros((layout.nrows, layout.ncols), np.float32)
     decoded = values.astype(np.float32) * np.float32(scale)
     if name in TIMES:
         field += np.float32(np.inf)
         decoded[numbers == NEVER] = np.inf
-    field[mask] = decoded
+    layout.scatter(decoded, states, field)
     return field

@@ -1,8 +1,9 @@
 """Frames to bytes and back.
 
 A group of up to 32 frames shares one key frame and one scale. The payload covers the cells owned by blocks
-that are not dry, in row-major order, as little-endian uint16: q for a key frame, (q - q_key) mod 65536 for a
-delta. A delta needs its key frame and nothing else, so that any other frame may be dropped.
+that are not dry, in row-major order, as 16-bit numbers: q for a key frame, (q - q_key) mod 65536 for a delta.
+They are laid out as `byte_planes` does; frames of older stores have them as they are ("u2"). A delta needs
+its key frame and nothing else, so that any other frame may be dropped.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy.typing as npt
 
 from protocol.bed_change import BedCells, pack_bed, unpack_bed
 from protocol.blocks import BlockLayout, IntArray, UInt8Array, UInt16Array
+from protocol.byte_planes import from_planes, to_planes
 from protocol.codec import pack, unpack_frame
 from protocol.compression import compress, decompress
 from protocol.depth_codec import Q_MAX, FloatArray, choose_depth_scale, dequantise_depth, quantise_depth
@@ -118,9 +120,10 @@ class FrameEncoder:
         is_key = force_key or scale != self.scale or not self._is_in_group(run, index)
         if is_key:
             self._run, self._key_index, self._key_q, self.scale = run, index, q.copy(), scale
-        mask = self.layout.owned_mask(states)
-        cells = q[mask] if is_key else q[mask] - self._key_q[mask]
-        raw = cells.astype("<u2", copy=False).data.cast("B")
+        numbers = self.layout.gather(q, states)
+        if not is_key:
+            numbers -= self.layout.gather(self._key_q, states)
+        raw = to_planes(numbers).data
         bed_cells, bed_values = pack_bed(bed, self.layout)
         return pack(
             Frame(
@@ -132,10 +135,11 @@ class FrameEncoder:
                 scale=scale,
                 states=self.layout.pack_states(states),
                 raw_size=raw.nbytes,
-                checksum=_checksum(raw, bed_cells, bed_values),
+                checksum=_checksum(numbers, bed_cells, bed_values),
                 payload=compress(raw),
                 bed_cells=bed_cells,
                 bed_values=bed_values,
+                codec="planes",
             )
         )
 
@@ -210,18 +214,18 @@ class FrameDecoder:
         if frame.raw_size != raw_size:
             raise FrameError(f"{where} declares {frame.raw_size} bytes; its blocks make {raw_size}.")
         raw = decompress(frame.payload, raw_size, raw_size)
-        if _checksum(raw, frame.bed_cells, frame.bed_values) != frame.checksum:
+        planes = np.frombuffer(raw, np.uint8)
+        numbers = from_planes(planes) if frame.codec == "planes" else planes.view("<u2").astype(np.uint16)
+        if _checksum(numbers, frame.bed_cells, frame.bed_values) != frame.checksum:
             raise FrameError(f"{where} has the wrong checksum.")
         bed = unpack_bed(frame.bed_cells, frame.bed_values, self.layout)
-        cells = np.frombuffer(raw, dtype="<u2").astype(np.uint16, copy=False)
-        mask = self.layout.owned_mask(states)
         if not frame.is_key:
             scale, key_q = self._key_of(frame)
             if scale != frame.scale:
                 raise FrameError(f"{where} has the scale {frame.scale!r}, its key frame {scale!r}.")
-            cells = cells + key_q[mask]
+            numbers += self.layout.gather(key_q, states)
         q = np.zeros((self.layout.nrows, self.layout.ncols), dtype=np.uint16)
-        q[mask] = cells
+        self.layout.scatter(numbers, states, q)
         q.flags.writeable = False
         if frame.is_key:
             self._keep(frame, q)
@@ -241,7 +245,8 @@ class FrameDecoder:
             self._keys.popitem(last=False)
 
 
-def _checksum(raw: bytes | memoryview, bed_cells: bytes, bed_values: bytes) -> int:
+def _checksum(numbers: UInt16Array, bed_cells: bytes, bed_values: bytes) -> int:
+    raw = numbers.astype("<u2", copy=False).data
     return zlib.crc32(bed_values, zlib.crc32(bed_cells, zlib.crc32(raw)))
 
 

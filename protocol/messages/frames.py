@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 from msgspec import Meta
 
@@ -19,6 +19,8 @@ from protocol.fields import (
 )
 from protocol.limits import MAX_BED_CELLS, MAX_FRAME_BYTES, MAX_STATE_BYTES, PART_BYTES
 
+FrameCodec = Literal["u2", "planes"]
+
 
 class Frame(Message, frozen=True):
     """Water depth of one output time. The page on the protocol says how the payload is laid out.
@@ -32,13 +34,14 @@ class Frame(Message, frozen=True):
         scale: depth of one unit [m].
         states: block states, two bits a block.
         raw_size: bytes of the payload when unpacked.
-        checksum: CRC-32 of the unpacked payload, of bed_cells and of bed_values, one after the other.
+        checksum: CRC-32 of the numbers of the payload, of bed_cells and of bed_values, one after the other.
         payload: depths of the cells owned by blocks that are not dry, compressed.
         bed_cells: cells whose bed is not base and edits at that time, since breaches have lowered them.
         bed_values: their bed [m, relative to the datum offset].
+        codec: how the numbers of the payload are laid out.
     """
 
-    left_out: ClassVar[tuple[str, ...]] = ("bed_cells", "bed_values")
+    left_out: ClassVar[tuple[str, ...]] = ("bed_cells", "bed_values", "codec")
 
     run: Identifier
     index: FrameIndex
@@ -52,6 +55,7 @@ class Frame(Message, frozen=True):
     payload: Annotated[bytes, Meta(max_length=MAX_FRAME_BYTES)]
     bed_cells: Annotated[bytes, Meta(max_length=4 * MAX_BED_CELLS)] = b""
     bed_values: Annotated[bytes, Meta(max_length=4 * MAX_BED_CELLS)] = b""
+    codec: FrameCodec = "u2"
 
     @property
     def is_key(self) -> bool:

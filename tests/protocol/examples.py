@@ -172,6 +172,9 @@ SERVER_EXAMPLES: dict[str, Message] = {
     "edits_changed-undone": p.EditsChanged("r-1", 4, (NAMED,), True, True, (AREA,)),
     "frame": p.Frame("r-1", 33, 330.0, 1, 32, 0.001, b"\x1b\x02", 6, 0xDEADBEEF, bytes(range(12))),
     "imagery_part": p.ImageryPart(30, "r-1", "imagery", 0, 2, bytes(range(8))),
+    "frame-planes": p.Frame(
+        "r-1", 33, 330.0, 1, 32, 0.001, b"\x1b\x02", 6, 0xDEADBEEF, bytes(range(12)), codec="planes"
+    ),
     "channel_part": p.ChannelPart(29, 0, 2, bytes(range(8))),
     "run_changed-channels": p.RunChanged(structs.replace(RUN, channels=("velocity", "maxima"))),
     "frame-breached": p.Frame(

@@ -76,6 +76,19 @@ def test_owned_cells_are_those_whose_owner_is_not_dry(nrows: int, ncols: int, se
 
 
 @given(sides, sides, st.integers(0, 2**32 - 1))
+def test_owned_cells_are_gathered_row_by_row_and_scattered_back(nrows: int, ncols: int, seed: int) -> None:
+    layout, rng = BlockLayout(nrows, ncols), np.random.default_rng(seed)
+    states = rng.integers(0, 2, layout.shape).astype(np.uint8)
+    mask = layout.owned_mask(states)
+    raster = rng.random((nrows, ncols))
+    cells = layout.gather(raster, states)
+    np.testing.assert_array_equal(cells, raster[mask])
+    back = np.full((nrows, ncols), -1.0)
+    layout.scatter(cells, states, back)
+    np.testing.assert_array_equal(back, np.where(mask, raster, -1.0))
+
+
+@given(sides, sides, st.integers(0, 2**32 - 1))
 def test_no_wet_cell_is_left_out_of_the_owned_ones(nrows: int, ncols: int, seed: int) -> None:
     layout = BlockLayout(nrows, ncols)
     q = random_water(np.random.default_rng(seed), nrows, ncols)

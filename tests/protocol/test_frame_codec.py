@@ -258,6 +258,20 @@ def test_frames_encoded_in_the_past_can_still_be_read() -> None:
         np.testing.assert_array_equal(decoder.decode(frame).q, expected + change * (expected > 0))
 
 
+def test_frames_in_planes_encoded_in_the_past_can_still_be_read() -> None:
+    decoder = FrameDecoder(LAYOUT)
+    for index in (0, 1):
+        frame = unpack_frame(read_hex(f"compressed/stored-planes-{index}"))
+        assert (frame.codec, frame.key_index) == ("planes", 0)
+        np.testing.assert_array_equal(decoder.decode(frame).q, quantise_depth(flood(index), 0.001, 1e-3))
+
+
+def test_a_frame_in_planes_is_refused_by_whoever_takes_it_for_plain_numbers() -> None:
+    frame = unpack_frame(FrameEncoder(LAYOUT).encode("r", 0, 0.0, 0, flood(3)))
+    with pytest.raises(FrameError, match="checksum"):
+        FrameDecoder(LAYOUT).decode(msgspec.structs.replace(frame, codec="u2"))
+
+
 def test_a_lowered_bed_comes_with_every_frame_and_a_frame_without_one_has_the_bytes_it_had() -> None:
     bed = np.array([3, 700], np.int64), np.array([-1.5, 2.25], np.float32)
     encoder, decoder = FrameEncoder(LAYOUT), FrameDecoder(LAYOUT)
