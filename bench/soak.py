@@ -18,6 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import psutil
 from websockets.exceptions import ConnectionClosed
@@ -114,7 +115,7 @@ def soak(folder: Path, duration: float, allowed: Allowed) -> Iterator[dict[str, 
         RuntimeError: the service refused what it had to do.
     """
     case = str(write_slosh_case(folder / "slosh", SIDE, SIDE, LAST * INTERVAL, INTERVAL))
-    options = {"threads": 1, "ring_bytes": 1 << 23, "checkpoint_interval_s": 1.0}
+    options: dict[str, Any] = {"threads": 1, "ring_bytes": 1 << 23, "checkpoint_interval_s": 1.0}
     done = Counter[str]()
     with ServiceProcess(folder / "data", cases=[case], **options) as service:
         sampler = Sampler(service.process.pid)

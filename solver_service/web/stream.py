@@ -6,7 +6,7 @@ import asyncio
 import logging
 import secrets
 import time
-from collections.abc import Set
+from collections.abc import Awaitable, Set
 from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -262,8 +262,7 @@ class StreamConnection:
             if packet is None and self.outbox.closing is not None:
                 await self._close(*self.outbox.closing)
             if packet is not None:
-                async with asyncio.timeout(SEND_TIMEOUT_S):
-                    await self._websocket.send_bytes(packet)
+                await put_through(self._websocket.send_bytes(packet))
                 self._bytes_sent += len(packet)
                 continue
             try:
@@ -344,6 +343,20 @@ class StreamConnection:
         self.outbox.close(close_code, sentence)
 
     async def _close(self, code: int, reason: str) -> None:
-        async with asyncio.timeout(SEND_TIMEOUT_S):
-            await self._websocket.close(code, reason[:120])
+        await put_through(self._websocket.close(code, reason[:120]))
         raise ConnectionEnded
+
+
+async def put_through(sending: Awaitable[None]) -> None:
+    """Send something over a websocket.
+
+    Raises:
+        ConnectionEnded: the client takes nothing for `SEND_TIMEOUT_S`, or has answered no ping.
+    """
+    try:
+        async with asyncio.timeout(SEND_TIMEOUT_S):
+            await sending
+    except TimeoutError as error:
+        raise ConnectionEnded from error
+    except RuntimeError as error:  # what the server below says once it has closed on a silent client
+        raise ConnectionEnded from error

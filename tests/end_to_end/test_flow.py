@@ -3,12 +3,15 @@
 import contextlib
 import socket
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed
 
 import protocol
+from bench import service_process
+from bench.crowd import Crowd, Viewer
 from bench.service_process import ServiceClient, ServiceProcess
 from protocol import BlockLayout, FrameDecoder
 from tests.end_to_end.dam_break import CELLS
@@ -91,6 +94,34 @@ def test_a_lost_connection_is_taken_up_without_a_gap(service: ServiceProcess, ru
         decoder = FrameDecoder(LAYOUT)
         for frame in decoded:
             np.testing.assert_array_equal(decoder.decode(client.first(protocol.Frame)).q, frame.q)
+
+
+IMPATIENT = """
+from solver_service.web import server
+server.PING_INTERVAL_S = server.PING_TIMEOUT_S = 0.4
+"""
+
+
+def test_a_viewer_that_has_died_is_let_go_while_one_that_lives_stays(
+    tmp_path: Path, case: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(service_process, "_SERVE", IMPATIENT + service_process._SERVE)
+    log = tmp_path / "log"
+    with (
+        log.open("wb") as stderr,
+        ServiceProcess(tmp_path / "data", stderr, cases=[case]) as service,
+        ServiceClient(service) as alive,
+    ):
+        run = str(alive.do(protocol.StartRun, case=case, duration=1e5)["run"])
+        with Crowd(service, run, [Viewer("dead", reads=False, credit=1)]) as crowd:
+            dead = crowd.sessions["dead"]
+            alive.do(protocol.Subscribe, run=run)
+            ends = time.monotonic() + 20.0
+            while any(fact["session"] == dead for fact in service.get("/v1/connections")):
+                assert time.monotonic() < ends, "the service holds on to a dead viewer"
+                alive.first(protocol.Frame)
+        alive.do(protocol.StopRun, run=run)
+    assert "Exception" not in log.read_text(encoding="utf-8")
 
 
 def test_a_client_that_never_reads_neither_slows_a_run_nor_another_viewer(

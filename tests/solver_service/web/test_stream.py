@@ -1,5 +1,6 @@
 """What the websocket refuses, and with which words; against a real service process."""
 
+import asyncio
 import time
 from typing import Any
 
@@ -10,6 +11,7 @@ from websockets.sync.client import ClientConnection, connect
 
 import protocol
 from bench.service_process import ServiceProcess
+from solver_service.web import stream
 
 
 def opened(service: ServiceProcess, token: str | None = None, **options: Any) -> ClientConnection:
@@ -155,3 +157,16 @@ def test_a_message_that_is_no_number_where_one_is_due_changes_nothing(service: S
         answer = protocol.unpack_server(data)
         assert isinstance(answer, protocol.Error)
         assert answer.code == "invalid_message"
+
+
+def test_a_connection_that_takes_nothing_or_was_closed_below_is_over_and_no_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async def closed_below() -> None:
+        raise RuntimeError("Unexpected ASGI message 'websocket.send', after sending 'websocket.close'.")
+
+    monkeypatch.setattr(stream, "SEND_TIMEOUT_S", 0.05)
+    for sending in (closed_below(), asyncio.sleep(60.0)):
+        with pytest.raises(stream.ConnectionEnded):
+            asyncio.run(stream.put_through(sending))
+    asyncio.run(stream.put_through(asyncio.sleep(0.0)))
