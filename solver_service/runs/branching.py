@@ -8,8 +8,10 @@ from dataclasses import replace
 from protocol import RunBranched, RunChanged
 from solver_service.errors import RunError
 from solver_service.runs.audience import Audience
+from solver_service.runs.breach_starts import check_breaches
 from solver_service.runs.case_catalogue import CaseCatalogue
 from solver_service.runs.edit_blobs import pack_edits
+from solver_service.runs.forced_course import WorkingForcing, course_of, pack_changes
 from solver_service.runs.run_reports import RunReports
 from solver_service.runs.run_status import ACTIVE, Move, RunStatus, check_move
 from solver_service.runs.run_tree import Run, RunTree, new_run_id
@@ -42,9 +44,15 @@ class Branching:
         self._audience = audience
 
     async def recalculate(
-        self, name: str, index: int, revision: int, keep_parent: bool = False, owner: str = ""
+        self,
+        name: str,
+        index: int,
+        revision: int,
+        keep_parent: bool = False,
+        owner: str = "",
+        forcing_revision: int | None = None,
     ) -> Run:
-        """Branch a run at a frame with its working list as terrain.
+        """Branch a run at a frame with its working list as terrain and its working forcing.
 
         Args:
             name: the run on the screen.
@@ -52,12 +60,14 @@ class Branching:
             revision: revision of the working list that is meant.
             keep_parent: whether the run goes on computing beside its child.
             owner: id of the token that is charged for the child.
+            forcing_revision: revision of the working forcing that is meant; None for the newest.
 
         Returns:
             The child.
 
         Raises:
-            RunError: the frame is not computed yet, or the working list has moved on.
+            RunError: the frame is not computed yet, a working list has moved on, or a breach that has begun
+                would be moved.
             StoreError: the child cannot be stored.
         """
         run = self._tree.get(name)
@@ -74,6 +84,7 @@ class Branching:
                     f"the edits of run {name} are at revision {run.edit_log.revision}, not {revision}; "
                     "look at them again"
                 )
+            forcing = self._forcing_for(run, parent, index, forcing_revision)
             record = replace(
                 parent.record,
                 run=new_run_id(),
@@ -86,15 +97,16 @@ class Branching:
                 owner=owner,
                 bed_revision=revision,
                 bed_edits=pack_edits(run.edit_log.edits),
+                forcing=pack_changes(forcing.changes),
             )
             worker = await self._worker_for_child(run, parent, record, keep_parent)
             try:
                 events = await self._store.call(RunDatabase.copied_edit_events, name, record.run)
-                await self._store.call(RunDatabase.insert_run, record, events)
+                await self._store.call(RunDatabase.insert_run, record, events, forcing.event(record.run))
             except BaseException:
                 self._supervisor.pool.release(worker)
                 raise
-            child = Run.of(record, events)
+            child = Run.of(record, events, forcing)
             self._tree.add(child)
             self._supervisor.begin(child, worker)
             if not keep_parent and run.status in ACTIVE:
@@ -103,6 +115,23 @@ class Branching:
         self._audience.announce(RunChanged(info))
         self._audience.announce(RunBranched(parent.run, info))
         return child
+
+    def _forcing_for(self, run: Run, parent: Run, index: int, revision: int | None) -> WorkingForcing:
+        """The working forcing of a run, for a child of `parent`.
+
+        Raises:
+            RunError: it has moved on, or a breach cannot be moved.
+        """
+        forcing = run.forcing
+        if revision is not None and revision != forcing.revision:
+            raise RunError(
+                f"the forcing of run {run.run} is at revision {forcing.revision}, not {revision}; "
+                "look at it again"
+            )
+        interval = parent.record.output_interval
+        past = course_of(self._tree.legs(parent.run), interval)
+        check_breaches(run.facts.forcing, past, forcing.changes, index * interval)
+        return forcing
 
     async def _worker_for_child(self, run: Run, parent: Run, child: RunRecord, keep_parent: bool) -> Worker:
         """The run's own warm worker, or with `keep_parent` another one that finds the state on disk."""

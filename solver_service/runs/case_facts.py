@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from protocol import GridInfo
+from protocol import ForcingItem, GridInfo
 
 
 class CaseFacts(msgspec.Struct, frozen=True):
@@ -17,6 +17,7 @@ class CaseFacts(msgspec.Struct, frozen=True):
         source: where the data comes from.
         licence: licence of the data.
         start_time: clock time of frame 0, ISO 8601 with offset.
+        forcing: what drives it from outside.
     """
 
     grid: GridInfo
@@ -25,6 +26,7 @@ class CaseFacts(msgspec.Struct, frozen=True):
     source: str = ""
     licence: str = ""
     start_time: str | None = None
+    forcing: tuple[ForcingItem, ...] = ()
 
     def pack(self) -> bytes:
         """The stored form."""

@@ -16,7 +16,11 @@ from solver_service.runs.case_facts import CaseFacts
 from solver_service.runs.edit_blobs import unpack_edits
 from solver_service.runs.lineage import Leg
 from solver_service.scenario import Case, load_case
+from solver_service.scenario.forced_model import ForcedFrom, forced_model, stretches
+from solver_service.scenario.forcing_items import forcing_items
 from solver_service.store import StoredState
+
+Course = tuple[ForcedFrom, ...]
 
 
 class Computation:
@@ -37,10 +41,8 @@ class Computation:
         self.device = pick_device(device)
         self.case: Case = load_case(name)
         self.fingerprint = fingerprint(self.case)
-        params = dataclasses.replace(self.case.params, threads=threads or self.case.params.threads)
-        self.solver = ShallowWaterSolver(self.case.model, params, self.device)
-        self.solver.set_water(self.case.initial_h)
-        self._initial = self.state()
+        self._params = dataclasses.replace(self.case.params, threads=threads or self.case.params.threads)
+        self._make_solver(())
         self._wall_s = 0.0
         self._advancing_since: float | None = None
 
@@ -54,6 +56,7 @@ class Computation:
             source=self.case.source,
             licence=self.case.licence,
             start_time=self.case.start_time,
+            forcing=forcing_items(self.case),
         )
 
     @property
@@ -66,15 +69,55 @@ class Computation:
         snapshot = self.solver.snapshot()
         return StoredState(self.solver.time, self.solver.step_count, snapshot.arrays, snapshot.scalars)
 
-    def restore(self, state: StoredState | None) -> None:
-        """Go to a state; None is the state at time 0."""
+    def restore(self, state: StoredState | None, course: Course = ()) -> None:
+        """Go to a state; None is the state at time 0.
+
+        Args:
+            state: the state.
+            course: from when on which changes of the forcing hold in the run that it belongs to.
+        """
+        driven = stretches(course)
+        if driven != self._driven:
+            self._make_solver(driven)
         state = state or self._initial
         self.solver.restore(Snapshot(dict(state.arrays), dict(state.scalars)))
 
-    def enter(self, leg: Leg) -> None:
-        """Lay the bed of a leg under the water of this moment."""
+    def enter(self, leg: Leg, course: Course = ()) -> tuple[str, ...]:
+        """Lay the bed of a leg under the water of this moment, and let its forcing take over.
+
+        Args:
+            leg: the leg.
+            course: from when on which changes of the forcing hold, this leg's last.
+
+        Returns:
+            Sentences about breaches that had begun before and cannot be moved.
+        """
+        told: tuple[str, ...] = ()
+        driven = stretches(course)
+        if driven != self._driven:
+            told = self._change_forcing(driven)
         edits = unpack_edits(leg.edits)
         self.solver.replace_bed(apply_edits(self.case.z_b, edits, self.case.grid).z_b)
+        return told
+
+    def _change_forcing(self, driven: Course) -> tuple[str, ...]:
+        snapshot, states = self.solver.snapshot(), self.solver.breach_states()
+        before = self.solver.model.breaches
+        self._make_solver(driven)
+        self.solver.adopt(snapshot)
+        return tuple(
+            f"the breach {state.id!r} had begun at {state.started_at:g} s and keeps its course;"
+            " its start cannot be moved any more"
+            for state, held, wanted in zip(states, before, self.solver.model.breaches, strict=True)
+            if state.started_at is not None and held != wanted
+        )
+
+    def _make_solver(self, driven: Course) -> None:
+        """A solver under a course of changes, with the water of time 0."""
+        self._driven = driven
+        self.solver = ShallowWaterSolver(forced_model(self.case, driven), self._params, self.device)
+        self.solver.set_water(self.case.initial_h)
+        self._initial = self.state()
 
     def advance_to(self, time: float, should_stop: Callable[[], bool]) -> bool:
         """Compute up to a time [s]; False when stopped before."""

@@ -1,8 +1,8 @@
 """The event log of a run: everything from which its frames can be computed again, and how to do it.
 
 A log is a text of JSON lines: first the run and its lineage (case, fingerprint of bed and forcing, branch
-points, the edits under each bed), then every change of its working list, every move of the run, and the
-checksum of every frame. The same case and the same log give the same bytes.
+points, the edits under each bed, the changes of its forcing), then every change of its working lists, every
+move of the run, and the checksum of every frame. The same case and the same log give the same bytes.
 """
 
 from __future__ import annotations
@@ -18,18 +18,26 @@ from solver_service.errors import StoreError
 from solver_service.runs.computation import Computation
 from solver_service.runs.edit_blobs import pack_edits, unpack_edits
 from solver_service.runs.edit_change import EditChange
+from solver_service.runs.forced_course import Changes, course_of, pack_changes, unpack_changes
 from solver_service.runs.frame_grouping import FrameGrouping
 from solver_service.runs.lineage import Leg, lineage
 from solver_service.store import RunDatabase
 
 
 class LoggedLeg(msgspec.Struct, frozen=True):
-    """A run of the lineage: its first frame and the bed that held from there on."""
+    """A run of the lineage: its first frame, and the bed and the forcing that held from there on."""
 
     run: str
     first_index: int
     revision: int
     edits: tuple[Edit, ...]
+    forcing: Changes = ()
+
+    def leg(self) -> Leg:
+        """As runs know it."""
+        return Leg(
+            self.run, self.first_index, self.revision, pack_edits(self.edits), pack_changes(self.forcing)
+        )
 
 
 class LoggedRun(msgspec.Struct, frozen=True, tag="run"):
@@ -62,6 +70,13 @@ class LoggedEdit(msgspec.Struct, frozen=True, tag="edit"):
     deleted: str = ""
 
 
+class LoggedForcing(msgspec.Struct, frozen=True, tag="forcing"):
+    """A change of the working forcing: its revision, and the whole list of changes to the case after it."""
+
+    revision: int
+    changes: Changes
+
+
 class LoggedMove(msgspec.Struct, frozen=True, tag="move"):
     """Something that happened to the run, at a wall clock time in seconds since 1970."""
 
@@ -78,7 +93,8 @@ class LoggedFrame(msgspec.Struct, frozen=True, tag="frame"):
     crc32: int
 
 
-Line = LoggedRun | LoggedEdit | LoggedMove | LoggedFrame
+LoggedEvent = LoggedEdit | LoggedForcing | LoggedMove
+Line = LoggedRun | LoggedEvent | LoggedFrame
 _DECODER = msgspec.json.Decoder(Line)
 
 
@@ -88,12 +104,12 @@ class EventLog:
 
     Attributes:
         run: what was computed.
-        events: edits and moves.
+        events: changes of edits and of forcing, and moves.
         frames: its own frames by index.
     """
 
     run: LoggedRun
-    events: tuple[LoggedEdit | LoggedMove, ...]
+    events: tuple[LoggedEvent, ...]
     frames: tuple[LoggedFrame, ...]
 
     def lines(self) -> bytes:
@@ -115,10 +131,13 @@ def read_event_log(database: RunDatabase, name: str) -> EventLog:
 
     def leg_of(run: str) -> tuple[Leg, str | None]:
         found = runs[run]
-        return Leg(run, found.branch_index, found.bed_revision, found.bed_edits), found.parent
+        leg = Leg(run, found.branch_index, found.bed_revision, found.bed_edits, found.forcing)
+        return leg, found.parent
 
     legs = tuple(
-        LoggedLeg(leg.run, leg.first_index, leg.revision, unpack_edits(leg.edits))
+        LoggedLeg(
+            leg.run, leg.first_index, leg.revision, unpack_edits(leg.edits), unpack_changes(leg.forcing)
+        )
         for leg in lineage(name, leg_of)
     )
     run = LoggedRun(
@@ -131,11 +150,13 @@ def read_event_log(database: RunDatabase, name: str) -> EventLog:
         legs,
     )
     edits = tuple(_logged(event.sequence, EditChange.of(event)) for event in database.edit_events(name))
+    forced = database.forcing_events(name)
+    forcing = tuple(LoggedForcing(event.revision, unpack_changes(event.changes)) for event in forced)
     moves = tuple(
         LoggedMove(event.wall_time, event.kind, event.detail) for event in database.run_events(name)
     )
     frames = tuple(LoggedFrame(row.index, row.size, row.crc32) for row in database.frames(name))
-    return EventLog(run, (*edits, *moves), frames)
+    return EventLog(run, (*edits, *forcing, *moves), frames)
 
 
 def _logged(sequence: int, change: EditChange) -> LoggedEdit:
@@ -157,7 +178,7 @@ def parse_event_log(text: bytes) -> EventLog:
         raise StoreError(f"this is no event log of a run: {error}") from error
     if not lines or not isinstance(lines[0], LoggedRun):
         raise StoreError("this is no event log of a run: its first line must be of type 'run'")
-    events = tuple(line for line in lines if isinstance(line, LoggedEdit | LoggedMove))
+    events = tuple(line for line in lines if isinstance(line, LoggedEvent))
     return EventLog(lines[0], events, tuple(line for line in lines if isinstance(line, LoggedFrame)))
 
 
@@ -184,19 +205,21 @@ def replay(
     layout = BlockLayout(computation.case.grid.nrows, computation.case.grid.ncols)
     encoder, grouping = FrameEncoder(layout), FrameGrouping()
     logged = {frame.index: frame for frame in log.frames}
+    legs, interval = tuple(leg.leg() for leg in run.legs), run.output_interval
+    computation.restore(None, course_of(legs[:1], interval))
     position = 0
     for index in range(max(logged, default=-1) + 1):
-        computation.advance_to(index * run.output_interval, lambda: False)
+        computation.advance_to(index * interval, lambda: False)
         while position + 1 < len(run.legs) and run.legs[position + 1].first_index == index:
             position += 1
-            leg = run.legs[position]
-            computation.enter(Leg(leg.run, leg.first_index, leg.revision, pack_edits(leg.edits)))
+            computation.enter(legs[position], course_of(legs[: position + 1], interval))
         if position + 1 == len(run.legs) and index in logged:
             q, states, scale = grouping.quantise(index, computation.quantise, computation.depth_max)
             time, revision = computation.solver.time, run.legs[-1].revision
+            bed = computation.solver.breached_bed()
             yield (
                 logged[index],
-                encoder.encode(run.run, index, time, revision, (q, states), scale=scale),
+                encoder.encode(run.run, index, time, revision, (q, states), scale=scale, bed=bed),
             )
 
 

@@ -15,12 +15,14 @@ class Leg:
         first_index: its first frame; the leg ends where the next one begins.
         revision: revision of the edit list of its bed.
         edits: that list, packed.
+        forcing: the changes of its forcing, packed.
     """
 
     run: str
     first_index: int
     revision: int
     edits: bytes
+    forcing: bytes
 
 
 def lineage(run: str, leg_of: Callable[[str], tuple[Leg, str | None]]) -> tuple[Leg, ...]:

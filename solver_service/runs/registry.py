@@ -19,6 +19,7 @@ from solver_service.runs.branching import Branching
 from solver_service.runs.case_catalogue import CaseCatalogue
 from solver_service.runs.controllers import Controllers
 from solver_service.runs.edit_desk import EditDesk
+from solver_service.runs.forcing_desk import ForcingDesk
 from solver_service.runs.housekeeper import Housekeeper, RoomRules
 from solver_service.runs.presentations import Presentations
 from solver_service.runs.restart_policy import RestartPolicy
@@ -51,7 +52,8 @@ class RunRegistry:
     Attributes:
         audience: who is told of changes.
         tree: all runs.
-        edits: their working lists.
+        edits: their working lists of edits.
+        forcing: their working forcing.
         controllers: who may change them.
         presentations: who shows a view to the others.
         supervisor: their workers.
@@ -112,6 +114,7 @@ class RunRegistry:
         self.controllers = Controllers(self.audience.announce)
         self.presentations = Presentations(self.audience.announce)
         self.edits = EditDesk(self.tree, self._store, self.audience)
+        self.forcing = ForcingDesk(self.tree, self._store, self.audience)
         policy = RestartPolicy(restart_attempts, restart_within_s)
         self.supervisor = Supervisor(
             self.tree, self._store, self._folder, self._catalogue, self.reports, policy
@@ -195,10 +198,6 @@ class RunRegistry:
 
     async def stored_bytes(self) -> list[StoredBytes]:
         """Room that each run takes in the store, by kind."""
-        return await self._store.call(RunDatabase.stored_bytes)
-
-    async def stored_bytes(self) -> dict[str, int]:
-        """Room that each run takes in the store [bytes]."""
         return await self._store.call(RunDatabase.stored_bytes)
 
     def infos(self) -> tuple[RunInfo, ...]:

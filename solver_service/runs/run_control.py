@@ -5,12 +5,13 @@ from __future__ import annotations
 import asyncio
 from dataclasses import replace
 
-from protocol import RunChanged, RunRemoved
+from protocol import RunChanged, RunRemoved, check_forcing
 from solver_service.errors import RunError
 from solver_service.runs.audience import Audience
 from solver_service.runs.case_catalogue import CaseCatalogue
 from solver_service.runs.controllers import Controllers
 from solver_service.runs.edit_blobs import pack_edits
+from solver_service.runs.forced_course import Changes, WorkingForcing, pack_changes
 from solver_service.runs.run_reports import RunReports
 from solver_service.runs.run_status import Move, RunStatus, check_move
 from solver_service.runs.run_tree import Run, RunTree, new_run_id
@@ -54,10 +55,21 @@ class RunControl:
         device: str = "auto",
         paused: bool = False,
         owner: str = "",
+        forcing: Changes = (),
     ) -> Run:
-        """Start a run of a case from time 0; `owner` is the id of the token that is charged for it.
+        """Start a run of a case from time 0.
+
+        Args:
+            case: name of the case.
+            duration: simulated time [s]; None for the case's own.
+            output_interval: time between frames [s]; None for the case's own.
+            device: where to compute.
+            paused: stop after the first frame.
+            owner: id of the token that is charged for it.
+            forcing: how its forcing differs from the case.
 
         Raises:
+            ForcingError: a change of forcing does not fit the case.
             RunError: the case is not offered, cannot be loaded, or no worker is free.
             StoreError: the run cannot be stored.
         """
@@ -68,6 +80,8 @@ class RunControl:
             worker = await self._supervisor.pool.take(name, source, device)
             try:
                 loaded = await worker.load(source, device)
+                check_forcing(forcing, loaded.facts.forcing)
+                working = WorkingForcing(1 if forcing else 0, forcing)
                 record = RunRecord(
                     run=name,
                     case=case,
@@ -84,12 +98,13 @@ class RunControl:
                     bed_edits=pack_edits(()),
                     facts=loaded.facts.pack(),
                     owner=owner,
+                    forcing=pack_changes(forcing),
                 )
-                await self._store.call(RunDatabase.insert_run, record)
+                await self._store.call(RunDatabase.insert_run, record, (), working.event(name))
             except BaseException:
                 self._supervisor.pool.release(worker)
                 raise
-            run = Run.of(record, ())
+            run = Run.of(record, (), working)
             self._tree.add(run)
             self._supervisor.begin(run, worker, paused=paused)
             self._audience.announce(RunChanged(self._tree.info(run)))

@@ -19,6 +19,7 @@ from solver_service.errors import ServiceError, StoreError, StoreFull
 from solver_service.numerics import pick_device
 from solver_service.runs.computation import Computation
 from solver_service.runs.course import Course, next_index_after
+from solver_service.runs.forced_course import course_of
 from solver_service.runs.frame_grouping import FrameGrouping, grouping_after, open_key_frame
 from solver_service.runs.frame_publisher import FramePublisher, QuantisedFrame
 from solver_service.runs.inbox import Inbox
@@ -167,7 +168,7 @@ class RunLoop:
         course.stored_end = last.index + 1 if last is not None else begin.legs[-1].first_index
         course.grouping = self._open_grouping(begin.run)
         course.position, state = self._nearest_state(course)
-        computation.restore(state)
+        computation.restore(state, course_of(begin.legs[: course.position + 1], begin.output_interval))
         course.began_at = computation.solver.time
         course.wall_before = computation.elapsed_s
         course.steps_before = computation.solver.step_count
@@ -219,7 +220,11 @@ class RunLoop:
             if computation.solver.time not in self._keeper.ring.times(past):
                 self._keeper.remember(past, computation.state())
             course.position += 1
-            computation.enter(begin.legs[course.position])
+            legs = begin.legs[: course.position + 1]
+            told = computation.enter(legs[-1], course_of(legs, begin.output_interval))
+            if len(legs) == len(begin.legs):  # its own leg: what an ancestor was told is old news
+                for sentence in told:
+                    self._report(Remark(begin.run, sentence))
         course.next_index = index + 1
         if not course.is_own:
             return

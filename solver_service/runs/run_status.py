@@ -30,6 +30,7 @@ class Move(StrEnum):
     PIN = "pin"
     UNPIN = "unpin"
     EDIT = "edit"
+    FORCE = "force"
     RECALCULATE = "recalculate"
     BEGIN = "begin"
     WAIT = "wait"
@@ -69,6 +70,7 @@ RULES: dict[Move, Rule] = {
     Move.PIN: Rule("pinned", _ALL, None),
     Move.UNPIN: Rule("unpinned", _ALL, None),
     Move.EDIT: Rule("edited", _ALL, None),
+    Move.FORCE: Rule("given another forcing", _ALL, None),
     Move.RECALCULATE: Rule("recalculated", _ALL, None),
     Move.BEGIN: Rule("run", frozenset({RunStatus.STARTING}), RunStatus.RUNNING),
     Move.WAIT: Rule("paused", _ACTIVE, RunStatus.PAUSED),

@@ -12,6 +12,7 @@ from protocol import EditLog, LineageEntry, RunInfo
 from solver_service.errors import RunError
 from solver_service.runs.case_facts import CaseFacts
 from solver_service.runs.edit_change import EditChange
+from solver_service.runs.forced_course import WorkingForcing
 from solver_service.runs.lineage import Leg, branch_point, lineage, owner
 from solver_service.runs.run_status import RunStatus
 from solver_service.runs.worker import Worker
@@ -27,7 +28,8 @@ class Run:
     Attributes:
         record: the row; status and reason in it are those of the beginning.
         facts: what is kept of its case.
-        edit_log: the working list.
+        edit_log: the working list of edits.
+        forcing: the working forcing.
         status: where it stands.
         reason: a sentence for failed runs and those that paused by themselves.
         frames: rows of its own frames, from `first_index` without a hole.
@@ -39,6 +41,7 @@ class Run:
     record: RunRecord
     facts: CaseFacts
     edit_log: EditLog
+    forcing: WorkingForcing
     status: RunStatus
     reason: str
     frames: list[FrameRecord]
@@ -47,10 +50,19 @@ class Run:
     lock: asyncio.Lock = field(default_factory=asyncio.Lock)
 
     @classmethod
-    def of(cls, record: RunRecord, events: Iterable[EditEvent]) -> Run:
-        """A run as its row and the history of its working list tell it, without frames."""
-        facts = CaseFacts.unpack(record.facts)
-        return cls(record, facts, replayed_log(events), RunStatus(record.status), record.status_reason, [])
+    def of(
+        cls, record: RunRecord, events: Iterable[EditEvent] = (), forcing: WorkingForcing | None = None
+    ) -> Run:
+        """A run as its row and the history of its working lists tell it, without frames."""
+        return cls(
+            record,
+            CaseFacts.unpack(record.facts),
+            replayed_log(events),
+            forcing or WorkingForcing(),
+            RunStatus(record.status),
+            record.status_reason,
+            [],
+        )
 
     @property
     def run(self) -> str:
@@ -153,11 +165,13 @@ class RunTree:
             message=run.reason,
             label=record.label,
             pinned=record.pinned,
+            forcing_revision=run.forcing.revision,
         )
 
     def _leg(self, name: str) -> tuple[Leg, str | None]:
         record = self.get(name).record
-        return Leg(name, record.branch_index, record.bed_revision, record.bed_edits), record.parent
+        leg = Leg(name, record.branch_index, record.bed_revision, record.bed_edits, record.forcing)
+        return leg, record.parent
 
 
 def new_run_id() -> str:

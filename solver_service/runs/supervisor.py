@@ -12,6 +12,7 @@ import logging
 
 from solver_service.errors import RunError, ServiceError
 from solver_service.runs.case_catalogue import CaseCatalogue
+from solver_service.runs.forced_course import WorkingForcing
 from solver_service.runs.restart_policy import RestartPolicy
 from solver_service.runs.run_reports import RunReports
 from solver_service.runs.run_status import ACTIVE, Move, RunStatus
@@ -178,6 +179,7 @@ def _mended_frames(database: RunDatabase, folder: DataFolder, run: str) -> list[
 
 def load_run(database: RunDatabase, folder: DataFolder, record: RunRecord) -> Run:
     """A run from the store, its files mended; for the start of a service."""
-    run = Run.of(record, database.edit_events(record.run))
+    forcing = [WorkingForcing.of(event) for event in database.forcing_events(record.run)[-1:]]
+    run = Run.of(record, database.edit_events(record.run), *forcing)
     run.frames = _mended_frames(database, folder, record.run)
     return run

@@ -9,6 +9,7 @@ from protocol import (
     AppendEdit,
     AppendEdits,
     CaseList,
+    ChangeForcing,
     Command,
     DeleteEdit,
     DeleteRun,
@@ -52,7 +53,16 @@ EditCommand = AppendEdit | AppendEdits | ReplaceEdit | DeleteEdit | UndoEdit | R
 """Commands that change a working list of edits."""
 
 CHANGES = (
-    PauseRun | ResumeRun | StopRun | DeleteRun | RenameRun | PinRun | UnpinRun | EditCommand | Recalculate
+    PauseRun
+    | ResumeRun
+    | StopRun
+    | DeleteRun
+    | RenameRun
+    | PinRun
+    | UnpinRun
+    | EditCommand
+    | ChangeForcing
+    | Recalculate
 )
 """Commands for which a session must control the run."""
 
@@ -108,6 +118,7 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
                     command.device,
                     command.paused,
                     owner_of(access),
+                    command.forcing,
                 )
             registry.controllers.take(run.run, client.identity, force=True)
             client.tell(Ack(command.id, {"run": run.run}))
@@ -151,6 +162,7 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
             if isinstance(command, Subscribe):
                 client.tell(RunChanged(registry.tree.info(registry.tree.get(command.run))))
                 client.tell(registry.edits.changed(command.run))
+                client.tell(registry.forcing.changed(command.run))
                 client.tell(registry.controllers.of(command.run))
         case Unsubscribe():
             client.tell(Ack(command.id))
@@ -158,17 +170,27 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
         case AppendEdit() | AppendEdits() | ReplaceEdit() | DeleteEdit() | UndoEdit() | RedoEdit():
             client.quotas.edit(access, len(command.edits) if isinstance(command, AppendEdits) else 1)
             client.tell(Ack(command.id, {"revision": await _edit(command, registry)}))
+        case ChangeForcing():
+            client.quotas.edit(access, 1)
+            revision = await registry.forcing.change(command.run, command.changes)
+            client.tell(Ack(command.id, {"revision": revision}))
         case Recalculate():
             watched = client.feed.run
             run = registry.tree.get(command.run)
             async with client.quotas.branch(access, run, command.keep_parent):
                 child = await registry.branching.recalculate(
-                    command.run, command.index, command.revision, command.keep_parent, owner_of(access)
+                    command.run,
+                    command.index,
+                    command.revision,
+                    command.keep_parent,
+                    owner_of(access),
+                    command.forcing_revision,
                 )
             registry.controllers.take(child.run, client.identity, force=True)
             client.tell(Ack(command.id, {"run": child.run}))
             if watched == command.run:
                 client.feed.move_to(child.run, command.index)
+                client.tell(registry.forcing.changed(child.run))
 
 
 async def _edit(command: EditCommand, registry: RunRegistry) -> int:

@@ -17,6 +17,7 @@ from protocol import (
     ControlRequested,
     EditsChanged,
     Error,
+    ForcingChanged,
     Hello,
     Notice,
     Progress,
@@ -52,6 +53,8 @@ POLICY_VIOLATION = 1008
 INTERNAL_ERROR = 1011
 TRY_LATER = 1013
 REPLACED = 4001
+AFTER_ANSWER = RunChanged | RunBranched | EditsChanged | ForcingChanged
+"""News that wait until the command under way is answered."""
 
 
 class ConnectionEnded(Exception):
@@ -169,14 +172,19 @@ class StreamConnection:
                 return
             case RunRemoved():
                 self.feed.leave(message.run)
-            case EditsChanged() if message.run not in (self.feed.run, getattr(self._busy_with, "run", None)):
+            case EditsChanged() | ForcingChanged() if message.run not in self._heeded:
                 return
-            case RunChanged() | RunBranched() | EditsChanged() if self._busy_with is not None:
+            case _ if self._busy_with is not None and isinstance(message, AFTER_ANSWER):
                 self._held.append(message)
                 return
             case _:
                 pass
         self.tell(message)
+
+    @property
+    def _heeded(self) -> tuple[str | None, ...]:
+        """Runs whose working lists the client wants to know: the watched one and that of its command."""
+        return self.feed.run, getattr(self._busy_with, "run", None)
 
     def _concerns(self, message: ControlChanged) -> bool:
         """Whether a change of control is of a watched run, or of one that is or was controlled from here."""
@@ -328,6 +336,7 @@ class StreamConnection:
             run = self.registry.tree.get(hello.resume.run)
             self.tell(RunChanged(self.registry.tree.info(run)))
             self.tell(self.registry.edits.changed(run.run))
+            self.tell(self.registry.forcing.changed(run.run))
         if hello.resume is not None and hello.resume.session is not None:
             self._replace(hello.resume.session)
 

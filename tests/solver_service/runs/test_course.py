@@ -6,7 +6,7 @@ from solver_service.runs.worker_messages import Begin
 
 
 def course(position: int, stored_end: int) -> Course:
-    legs = (Leg("r1", 0, 0, b""), Leg("r2", 6, 1, b""))
+    legs = (Leg("r1", 0, 0, b"", b""), Leg("r2", 6, 1, b"", b""))
     begin = Begin("r2", "case", "f00d", "cpu", legs, 5.0, 20)
     return Course(begin, position=position, stored_end=stored_end)
 

@@ -3,9 +3,9 @@ import pytest
 from solver_service.runs.lineage import Leg, branch_point, lineage, owner
 
 LEGS = {
-    "root": (Leg("root", 0, 0, b""), None),
-    "child": (Leg("child", 5, 1, b"a"), "root"),
-    "grandchild": (Leg("grandchild", 9, 2, b"ab"), "child"),
+    "root": (Leg("root", 0, 0, b"", b""), None),
+    "child": (Leg("child", 5, 1, b"a", b""), "root"),
+    "grandchild": (Leg("grandchild", 9, 2, b"ab", b""), "child"),
 }
 
 
