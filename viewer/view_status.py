@@ -172,6 +172,8 @@ class ViewStatus:
         time: playback time [s].
         clock: clock time of the playback time in words, empty where the case has no clock.
         data_age: since the service was last heard [s]; None when it never was.
+        is_measuring: whether the measuring tool is in the hand.
+        measured: what it says in words, empty before there are two points.
         presenters: the sessions that show their view.
         is_presenting: whether this viewer shows its view.
         followed: session whose view is followed, None flies freely.
@@ -224,6 +226,8 @@ class ViewStatus:
     followed: str | None = None
     playback_speed: float = 1.0
     is_drawing: bool = False
+    is_measuring: bool = False
+    measured: str = ""
     drawn_vertices: int = 0
     edit_settings: EditSettings = field(default_factory=EditSettings)
     edits: tuple[EditRow, ...] = ()

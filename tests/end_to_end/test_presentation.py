@@ -70,10 +70,10 @@ def test_a_viewer_that_follows_sees_what_the_presenting_one_sees(service: Servic
 
         def is_offered() -> bool:
             presenter.advance()
-            return bool(follower.app.presenting.presenters)
+            return bool(follower.app.fresh_status().presenters)
 
         follower.until(is_offered)
-        follower.app.carry_out(FollowView(follower.app.presenting.presenters[0].session))
+        follower.app.carry_out(FollowView(follower.app.fresh_status().presenters[0].session))
         follower.until(lambda: follower.app.shown is not None and follower.app.is_settled)
         ours, theirs = presenter.app.view_pose(), follower.app.view_pose()
 

@@ -18,8 +18,18 @@ def hud_text(
     progress: protocol.Progress | None,
     recalculated: Recalculation | None,
     notice: str,
+    measured: str = "",
 ) -> HudText:
-    """Return the text of the picture."""
+    """Return the text of the picture.
+
+    Args:
+        shown: the run on it.
+        time: its simulation time [s].
+        progress: the newest progress of the run, if there is any.
+        recalculated: the newest recalculation, if there is any.
+        notice: a warning.
+        measured: what the measuring tool says.
+    """
     info = shown.info
     lines = [f"{info.status}, computed until {time_text(shown.computed_until)} on {info.device}"]
     if progress is not None:
@@ -30,6 +40,8 @@ def hud_text(
         lines.append(f"recalculated from {time_text(info.branch_index * info.output_interval)}")
     if recalculated is not None and recalculated.child == info.run and recalculated.first_frame_s is not None:
         lines[-1] += f", first frame after {recalculated.first_frame_s:.2f} s"
+    if measured:
+        lines.append(f"measured: {measured}")
     return HudText(
         title=info.title,
         time="   ".join(filter(None, (time_text(time), clock_text(info.start_time, time)))),

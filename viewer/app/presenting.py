@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import protocol
 from viewer.app.camera_work import CameraWork
 from viewer.app.run_control import RunControl
@@ -20,7 +22,7 @@ from viewer.commands import (
     TopView,
     Zoom,
 )
-from viewer.view_status import PresenterRow
+from viewer.view_status import PresenterRow, ViewStatus
 from viewer.world import PlaybackClock
 
 __all__ = ["Presenting"]
@@ -55,10 +57,12 @@ class Presenting:
         self._sent_at = float("-inf")
         self._followed: protocol.View | None = None
 
-    @property
-    def presenters(self) -> tuple[PresenterRow, ...]:
-        """The sessions that present, in the order they began."""
-        return tuple(PresenterRow(name, shown.client) for name, shown in self._views.items())
+    def report(self, status: ViewStatus) -> ViewStatus:
+        """Return `status` with who presents and who is followed."""
+        rows = tuple(PresenterRow(name, shown.client) for name, shown in self._views.items())
+        return dataclasses.replace(
+            status, presenters=rows, is_presenting=self.is_presenting, followed=self.following
+        )
 
     def carry_out(self, command: Command) -> bool:
         """Carry out a command about presentations; return False when it is none.

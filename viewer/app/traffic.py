@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
+
+from viewer.app.service_desk import ServiceDesk
+from viewer.view_status import ViewStatus
+
 __all__ = ["Traffic"]
 
 SPAN_S = 1.0
@@ -14,6 +19,16 @@ class Traffic:
     def __init__(self) -> None:
         self._since: tuple[float, int] | None = None
         self.rate = 0.0
+
+    def report(self, status: ViewStatus, desk: ServiceDesk, now: float) -> ViewStatus:
+        """Return `status` with what comes in and how old it is, at wall time `now` [s, monotonic]."""
+        received, age = desk.connection.received_bytes, desk.data_age(now)
+        return dataclasses.replace(
+            status,
+            received_bytes=received,
+            received_bit_s=self.note(received, now),
+            data_age=None if age is None else float(int(age)),  # whole seconds: one new status a second
+        )
 
     def note(self, received: int, now: float) -> float:
         """Take a reading and return the rate [bit/s] of the last whole span.

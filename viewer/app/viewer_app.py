@@ -14,10 +14,11 @@ import protocol
 from viewer.app.camera_work import CameraWork
 from viewer.app.comparison import Comparison
 from viewer.app.edit_report import edit_overlay
+from viewer.app.hud_writer import HudWriter
 from viewer.app.levee_watch import LeveeWatch
 from viewer.app.map_maker import MapMaker
+from viewer.app.measuring import Measuring
 from viewer.app.picture_file import checked_order
-from viewer.app.picture_text import hud_text, loss_notice
 from viewer.app.playback import Playback
 from viewer.app.pointing import Pointing
 from viewer.app.presenting import Presenting
@@ -54,7 +55,7 @@ from viewer.commands import (
 )
 from viewer.errors import ViewerError
 from viewer.net import ConnectionThread, FrameLoader
-from viewer.render import FrameInputs, HudText, RenderOptions
+from viewer.render import FrameInputs, RenderOptions
 from viewer.view_status import ViewStatus
 from viewer.world import Heightfield, MapView, PlaybackClock
 
@@ -79,8 +80,6 @@ WITHOUT_PICTURE = (
 """Commands that change no picture by themselves; what they bring about does."""
 CLICK_REACH = 0.015
 """How far a click may miss what it is meant for, as a share of the height of the picture."""
-TEXT_PERIOD_S = 0.5
-"""The picture is drawn anew at most this often when only its text has changed [s]."""
 STATUS_PERIOD_S = 0.1
 """The status is made anew at most this often while only time passes [s]."""
 
@@ -107,8 +106,6 @@ class ViewerApp:
         self.camera_work: CameraWork | None = None
         self._picture_order: SavePicture | None = None
         self._last_advance: float | None = None
-        self._drawn_text: HudText | None = None
-        self._text_checked = -math.inf
         self._picture_stale = True
         self._status_stale = True
         self._status_made = -math.inf
@@ -122,6 +119,8 @@ class ViewerApp:
         self.control.editing.reach = self._click_reach
         self.control.editing.look = lambda x, y: self.pointing.readout(x, y, self.shown)
         self.presenting = Presenting(self.control, self.clock)
+        self.measuring = Measuring()
+        self._hud = HudWriter(self.control, self.clock, self.measuring)
         self.control.presented = self.presenting.take
         self.control.opened = self.presenting.forget
 
@@ -166,6 +165,7 @@ class ViewerApp:
             self.presenting.carry_out(command)
             or self.playback.carry_out(command)
             or self._steer(command)
+            or self.measuring.carry_out(command, self.shown)
             or self.control.editing.carry_out(command, self.shown)
         ):
             return
@@ -180,8 +180,9 @@ class ViewerApp:
                 self.pointing.take(command, self.shown)
             case MoveHover():
                 self.pointing.take(command, self.shown)
-                self._picture_stale |= self.control.editing.drawing.is_on
+                self._picture_stale |= self.control.editing.drawing.is_on or self.measuring.is_on
                 self.control.editing.hover(self.pointing.hover_at, self.shown)
+                self.measuring.hover = self.pointing.hover_at
             case SavePicture():
                 self._picture_order = checked_order(command)
             case _:
@@ -211,7 +212,10 @@ class ViewerApp:
         self._picture_stale |= self.desk.is_open != connected_before
         self._status_stale |= self.control.is_stale
         self.control.is_stale = False
-        changed = self._picture_stale or self._is_text_old(now)
+        changed = self._picture_stale
+        # Never before a branch: its first frame is not to wait for a picture of its parent.
+        if self.shown is not None and not self.is_busy:
+            changed |= self._hud.is_old(self.shown, self.options.units, now)
         self._picture_stale = False
         self.presenting.advance(self.camera_work, now)
         shown = self.shown
@@ -277,13 +281,12 @@ class ViewerApp:
         """Return all the picture depends on, None before the terrain has come."""
         if self.shown is None or self.camera_work is None:
             return None
-        self._drawn_text = self._text(self.shown)
         inputs = FrameInputs(
             camera=self.camera_work.camera,
             water=self.feed.pair,
-            edits=edit_overlay(self.shown, self.control.editing),
+            edits=self.measuring.overlay(edit_overlay(self.shown, self.control.editing), self.shown),
             options=self.options,
-            hud=self._drawn_text,
+            hud=self._hud.write(self.shown, self.options.units),
             difference=self.comparison.difference,
             is_outdated=not self.desk.is_open,
         )
@@ -328,31 +331,12 @@ class ViewerApp:
 
     # --- within ---------------------------------------------------------------------------------------
 
-    def _text(self, shown: ShownRun) -> HudText:
-        notice = "" if self.desk.is_open else self._loss_notice()
-        progress = self.desk.book.progress.get(shown.run)
-        return hud_text(shown, self.clock.time, progress, self.recalculated, notice)
-
     def _click_reach(self) -> float:
         """How far on the ground looked at a click may miss [m]."""
         if self.camera_work is None:
             return 0.0
         camera = self.camera_work.camera
         return CLICK_REACH * 2.0 * camera.distance * math.tan(0.5 * camera.fov_y)
-
-    def _data_age(self) -> float | None:
-        age = self.desk.data_age(wall_clock.monotonic())
-        return None if age is None else float(int(age))  # whole seconds: a new status a second at most
-
-    def _loss_notice(self) -> str:
-        return loss_notice(self.desk.connection_sentence(), self.desk.data_age(wall_clock.monotonic()))
-
-    def _is_text_old(self, now: float) -> bool:
-        """Whether the picture is to be drawn anew for its text alone: not often, never before a branch."""
-        if self.shown is None or self.is_busy or now - self._text_checked < TEXT_PERIOD_S:
-            return False
-        self._text_checked = now
-        return self._text(self.shown) != self._drawn_text
 
     def _new_terrain(self, shown: ShownRun) -> None:
         """Look at another terrain from where all of it is seen."""
@@ -363,22 +347,15 @@ class ViewerApp:
 
     def _make_status(self) -> ViewStatus:
         status = program_status(self.desk, self.clock, self.control.editing, self.message)
-        received = self.desk.connection.received_bytes
-        status = dataclasses.replace(
-            status,
-            units=self.options.units,
-            data_age=self._data_age(),
-            received_bytes=received,
-            presenters=self.presenting.presenters,
-            is_presenting=self.presenting.is_presenting,
-            followed=self.presenting.following,
-            loops=self.clock.loops,
-            received_bit_s=self._traffic.note(received, wall_clock.monotonic()),
-        )
+        now = wall_clock.monotonic()
+        status = self._traffic.report(status, self.desk, now)
+        status = self.presenting.report(status)
+        status = dataclasses.replace(status, units=self.options.units, loops=self.clock.loops)
         if self.shown is None:
             return status
         status = run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch)
         status = self.water.told(status, self.options)
         other = self.comparison.other
         compared = dataclasses.replace(status, compared_run=None if other is None else other.run)
-        return self.pointing.report(compared, self.shown)
+        measured = self.measuring.report(compared, self.shown)
+        return self.pointing.report(measured, self.shown)

@@ -43,6 +43,7 @@ from viewer.commands.edits import (
     Undo,
 )
 from viewer.commands.mapping import command_from_mapping
+from viewer.commands.measuring import AddMeasurePoint, BeginMeasure, EndMeasure
 from viewer.commands.picture import (
     MoveHover,
     ProbeAt,
@@ -72,9 +73,11 @@ from viewer.commands.runs import (
 )
 
 __all__ = [
+    "AddMeasurePoint",
     "AddVertex",
     "BeginEdit",
     "BeginLevelPick",
+    "BeginMeasure",
     "BeginSelect",
     "CancelEdit",
     "ChangeEdit",
@@ -89,6 +92,7 @@ __all__ = [
     "DragPan",
     "DropEdit",
     "DropVertex",
+    "EndMeasure",
     "EndStroke",
     "FinishEdit",
     "FlyTo",

@@ -39,6 +39,7 @@ from viewer.commands.edits import (
     TakeLevel,
     Undo,
 )
+from viewer.commands.measuring import AddMeasurePoint, BeginMeasure, EndMeasure
 from viewer.commands.picture import (
     MoveHover,
     ProbeAt,
@@ -83,6 +84,9 @@ Command = (
     | SetSpeed
     | FollowLive
     | Loop
+    | BeginMeasure
+    | AddMeasurePoint
+    | EndMeasure
     | PresentView
     | FollowView
     | ConnectTo

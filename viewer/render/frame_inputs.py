@@ -38,6 +38,7 @@ class LineStyle(Enum):
     LOWER = "lower"
     DRAFT = "draft"
     SELECTED = "selected"
+    MEASURE = "measure"
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ _COLOURS = {
     LineStyle.RAISE: (1.0, 0.72, 0.30, 1.0),
     LineStyle.LOWER: (0.55, 0.75, 1.0, 1.0),
     LineStyle.DRAFT: (1.0, 1.0, 1.0, 1.0),
+    LineStyle.MEASURE: (1.0, 0.45, 0.85, 1.0),
     LineStyle.SELECTED: (1.0, 1.0, 0.35, 1.0),
 }
 _WIDTH_PX = 5.0

@@ -7,6 +7,7 @@ from viewer.world.edit_measures import EditMeasure, measure_edits
 from viewer.world.frame_cache import FrameCache
 from viewer.world.frustum import Frustum
 from viewer.world.heightfield import Heightfield, Rect, union_rect
+from viewer.world.measure import Measure, measure
 from viewer.world.moved_bed import MovedBed, bed_with, blended_bed
 from viewer.world.orbit_motion import Flight, Move, OrbitMotion
 from viewer.world.playback_clock import PlaybackClock
@@ -36,6 +37,7 @@ __all__ = [
     "GroundHeight",
     "Heightfield",
     "MapView",
+    "Measure",
     "Move",
     "MovedBed",
     "OrbitMotion",
@@ -52,6 +54,7 @@ __all__ = [
     "flood_extent",
     "ground_in_view",
     "hazard_rating",
+    "measure",
     "measure_edits",
     "overview",
     "probe",

@@ -1,4 +1,8 @@
+import time
+
+from tests.viewer.app.conftest import Flight
 from viewer.app.traffic import Traffic
+from viewer.view_status import ViewStatus
 
 
 def test_the_rate_is_that_of_the_last_whole_second() -> None:
@@ -16,3 +20,10 @@ def test_a_counter_that_begins_again_gives_no_negative_rate() -> None:
 
     assert traffic.note(10, 2.0) == 0.0
     assert traffic.note(135, 3.0) == 1000.0
+
+
+def test_the_status_tells_traffic_and_the_age_in_whole_seconds(flight: Flight) -> None:
+    told = Traffic().report(ViewStatus(), flight.app.desk, time.monotonic() + 3.5)
+
+    assert told.received_bytes == flight.app.desk.connection.received_bytes > 0
+    assert told.data_age == 3.0
