@@ -1,6 +1,6 @@
 """How long a line is on the map and over the ground, and how large the area within it is.
 
-The area is that of the closed ring on the map, by the shoelace formula: half of |sum(x_i y_j - x_j y_i)|, where
+The area is that of the closed ring on the map, by the shoelace formula: half of |sum(x_i y_j - x_j y_i)| with
 j = i + 1.
 A ring that crosses itself counts what it goes round the other way as negative.
 """
