@@ -6,5 +6,6 @@ from solver_service.runs.housekeeper import RoomRules
 from solver_service.runs.registry import RunRegistry
 from solver_service.runs.run_status import RunStatus
 from solver_service.runs.run_tree import Run
+from solver_service.runs.worker_watch import Patience
 
-__all__ = ["Listener", "RoomRules", "Run", "RunRegistry", "RunStatus", "Session"]
+__all__ = ["Listener", "Patience", "RoomRules", "Run", "RunRegistry", "RunStatus", "Session"]

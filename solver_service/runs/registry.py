@@ -31,6 +31,7 @@ from solver_service.runs.store_thread import StoreThread
 from solver_service.runs.supervisor import Supervisor, load_run
 from solver_service.runs.worker_messages import WorkerSettings
 from solver_service.runs.worker_pool import WorkerPool
+from solver_service.runs.worker_watch import Patience
 from solver_service.store import (
     DataFolder,
     FrameReader,
@@ -75,6 +76,7 @@ class RunRegistry:
         room: RoomRules | None = None,
         log_format: str = "text",
         log_level: str = "warning",
+        patience: Patience | None = None,
     ) -> None:
         """Open the store; `open` then begins the work.
 
@@ -91,6 +93,7 @@ class RunRegistry:
             room: how much the store may take.
             log_format: "text" or "json", for the lines of the workers.
             log_level: least level of these lines.
+            patience: how long a worker may show nothing before it is taken to hang.
 
         Raises:
             StoreError: the folder is in use or cannot be used.
@@ -106,6 +109,7 @@ class RunRegistry:
         )
         self._spare_workers = spare_workers
         self._room = room or RoomRules()
+        self._patience = patience or Patience()
         self._housekeeping: asyncio.Task[None]
         self._commands: set[asyncio.Task[None]] = set()
         self.audience = Audience()
@@ -154,6 +158,7 @@ class RunRegistry:
             lambda name: name in self.tree and self.tree.get(name).status not in ACTIVE,
         )
         self.pool.start_spares()
+        self.pool.watch(self._patience)
 
     async def close(self) -> None:
         """Pause what computes, end the workers, close the store."""

@@ -6,6 +6,7 @@ import asyncio
 import itertools
 import logging
 import threading
+import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -21,6 +22,7 @@ from solver_service.runs.worker_messages import (
     Failed,
     Left,
     LoadCase,
+    Pulse,
     Quit,
     Ready,
     Report,
@@ -47,6 +49,9 @@ class Worker:
         case: case and device it has loaded, None for none.
         holds: runs of which something may still be on its way from this worker to the disk, with the number
             of the last Begin of each.
+        pulse_at: when the last pulse came, or the process was started (monotonic clock) [s].
+        advanced_at: when its solver thread was last seen to go on, or to wait for orders [s].
+        has_pulse: whether a pulse ever came.
         is_ending: whether it was told to end, or will be; such a worker takes no run.
     """
 
@@ -66,6 +71,9 @@ class Worker:
         self.holds: dict[str, int] = {}
         self.is_ending = False
         self.pid: int | None = None
+        self.pulse_at = self.advanced_at = time.monotonic()
+        self.has_pulse = False
+        self._looks = 0
         self._last_words: Failed | None = None
         self._on_report = on_report
         self._on_death = on_death
@@ -160,6 +168,11 @@ class Worker:
             return self._last_words.kind, self._last_words.message
         return failure_of_exit(self._process.exitcode if self._process is not None else None)
 
+    def give_up(self, kind: FailureKind, words: str) -> None:
+        """End the process at once, for a reason that is then the cause of its death."""
+        self._last_words = Failed(self.run or "", kind, words, ending=True)
+        self.kill()
+
     def kill(self) -> None:
         """End the process at once."""
         if self._process is not None:
@@ -180,7 +193,10 @@ class Worker:
 
     def _hear(self, report: Report) -> None:
         match report:
+            case Pulse():
+                self._feel(report)
             case Ready():
+                self.advanced_at = time.monotonic()
                 self.devices = report.devices
                 self._ready.set()
             case Unfit():
@@ -203,6 +219,13 @@ class Worker:
                 self._on_report(self, report)
             case _:
                 self._on_report(self, report)
+
+    def _feel(self, pulse: Pulse) -> None:
+        self.has_pulse = True
+        self.pulse_at = time.monotonic()
+        if pulse.waits or pulse.looks != self._looks:
+            self.advanced_at = self.pulse_at
+        self._looks = pulse.looks
 
     def _end(self) -> None:
         self._dead.set()

@@ -12,6 +12,7 @@ class FailureKind(StrEnum):
     """What went wrong; decides whether another worker may try again."""
 
     KILLED = "killed"
+    HUNG = "hung"
     OUT_OF_MEMORY = "out_of_memory"
     DEVICE = "device"
     CRASHED = "crashed"
@@ -19,7 +20,15 @@ class FailureKind(StrEnum):
     REFUSED = "refused"
 
 
-RETRIED = frozenset({FailureKind.KILLED, FailureKind.OUT_OF_MEMORY, FailureKind.DEVICE, FailureKind.CRASHED})
+RETRIED = frozenset(
+    {
+        FailureKind.KILLED,
+        FailureKind.HUNG,
+        FailureKind.OUT_OF_MEMORY,
+        FailureKind.DEVICE,
+        FailureKind.CRASHED,
+    }
+)
 """What may be gone at the next attempt; the same computation would blow up, or be refused, again."""
 
 _MEMORY_SIGNS = ("failed to allocate", "out of memory", "cannot allocate memory", "bad_alloc")

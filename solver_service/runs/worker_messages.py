@@ -111,6 +111,19 @@ class Ready:
 
 
 @dataclass(frozen=True)
+class Pulse:
+    """The process lives; comes each second from a thread of its own.
+
+    Attributes:
+        looks: how often the solver thread has looked for commands.
+        waits: whether it waits for one.
+    """
+
+    looks: int
+    waits: bool
+
+
+@dataclass(frozen=True)
 class Unfit:
     """The worker cannot compute here and ends."""
 
@@ -267,6 +280,7 @@ class Remark:
 
 Report = (
     Ready
+    | Pulse
     | Unfit
     | CaseLoaded
     | CaseRefused

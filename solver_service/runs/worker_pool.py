@@ -9,6 +9,7 @@ from collections.abc import Callable
 from solver_service.errors import RunError
 from solver_service.runs.worker import Worker
 from solver_service.runs.worker_messages import Report, WorkerSettings
+from solver_service.runs.worker_watch import Patience, WorkerWatch
 
 LOG = logging.getLogger(__name__)
 
@@ -61,6 +62,11 @@ class WorkerPool:
         task = asyncio.get_running_loop().create_task(self._fill(delay_s))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+
+    def watch(self, patience: Patience) -> None:
+        """Look after the workers, until the pool is closed."""
+        task = asyncio.get_running_loop().create_task(WorkerWatch(lambda: self._workers, patience).work())
+        self._tasks.add(task)
 
     async def take(self, run: str, case: str, device: str) -> Worker:
         """A ready worker for a run: a spare one, best one that holds the case, else one that is not needed.

@@ -8,17 +8,21 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
+from collections.abc import Callable
 from multiprocessing.connection import Connection
 
 from solver_service.errors import ServiceError
 from solver_service.logging_setup import set_up_logging
+from solver_service.runs.inbox import Inbox
 from solver_service.runs.native_lines import give_stderr_to
 from solver_service.runs.worker_failure import failure_of
-from solver_service.runs.worker_messages import Failed, Ready, Report, Unfit, WorkerSettings
+from solver_service.runs.worker_messages import Failed, Pulse, Ready, Report, Unfit, WorkerSettings
 
 LOG = logging.getLogger(__name__)
 
 FAILED = 1
+PULSE_INTERVAL_S = 1.0
 
 
 def worker_main(settings: WorkerSettings, connection: Connection, errors: Connection) -> None:
@@ -46,9 +50,11 @@ def worker_main(settings: WorkerSettings, connection: Connection, errors: Connec
             except OSError:
                 LOG.info("the service is gone; nobody hears %s", type(message).__name__)
 
+    inbox = Inbox(connection)
+    threading.Thread(target=_beat, args=(inbox, report), name="worker-pulse", daemon=True).start()
+
     # the heavy imports are what a warm worker has behind it
     from solver_service.numerics import device_names, warm_kernels
-    from solver_service.runs.inbox import Inbox
     from solver_service.runs.run_loop import RunLoop
 
     try:
@@ -58,7 +64,7 @@ def worker_main(settings: WorkerSettings, connection: Connection, errors: Connec
         return
     gc.freeze()
     gc.disable()  # a collection on another thread can break a CUDA graph capture; the solver thread collects
-    loop = RunLoop(settings, Inbox(connection), report)
+    loop = RunLoop(settings, inbox, report)
     loops.append(loop)
 
     def give_up(error: BaseException | None) -> None:
@@ -77,6 +83,13 @@ def worker_main(settings: WorkerSettings, connection: Connection, errors: Connec
         loop.serve()
     except Exception as error:
         give_up(error)
+
+
+def _beat(inbox: Inbox, report: Callable[[Report], None]) -> None:
+    """Tell each second that the process lives, and whether its solver thread goes on."""
+    while True:
+        report(Pulse(inbox.looks, inbox.is_waited_for))
+        time.sleep(PULSE_INTERVAL_S)
 
 
 def start_worker(

@@ -18,7 +18,7 @@ import uvicorn
 from protocol import limits
 from solver_service.errors import ServeError
 from solver_service.logging_setup import conceal, set_up_logging
-from solver_service.runs import RoomRules, RunRegistry
+from solver_service.runs import Patience, RoomRules, RunRegistry
 from solver_service.store import DataFolder
 from solver_service.uploads.upload_desk import UploadDesk
 from solver_service.web.app import create_app
@@ -66,6 +66,7 @@ def run_service(settings: ServiceSettings) -> None:
             restart_within_s=settings.restart_within_s,
             log_format=settings.log_format,
             log_level=settings.log_level,
+            patience=Patience(settings.worker_silence_s, settings.worker_stall_s),
             room=RoomRules(settings.store_bytes, settings.reserve_bytes),
         )
         tokens = TokenStore(settings.data_dir)

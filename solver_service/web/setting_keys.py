@@ -158,6 +158,20 @@ KEYS: tuple[SettingKey, ...] = (
     SettingKey("store_bytes", "integer", "budget of frames and checkpoints [bytes]", "--store-bytes", 1),
     SettingKey("reserve_bytes", "integer", "room on the disk that is left to others [bytes]", least=0),
     SettingKey(
+        "worker_silence_s",
+        "number",
+        "how long a worker may give no sign at all before another takes its run [s]",
+        least=2.0,
+        most=1e6,
+    ),
+    SettingKey(
+        "worker_stall_s",
+        "number",
+        "how long it may do one and the same thing, such as a step or a compilation [s]",
+        least=2.0,
+        most=1e6,
+    ),
+    SettingKey(
         "log_format",
         "text",
         "form of the log lines on standard error",

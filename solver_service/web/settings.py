@@ -39,6 +39,8 @@ class ServiceSettings:
         restart_within_s: the time in which these attempts count [s].
         store_bytes: most bytes of frames and checkpoints; None for as much as the disk has.
         reserve_bytes: room on the disk that is left to others [bytes].
+        worker_silence_s: how long a worker may give no sign at all before another takes its run [s].
+        worker_stall_s: how long it may do one and the same thing, such as a step or a compilation [s].
         log_format: "text" or "json".
         log_level: least level of the lines that are written.
         upload_bytes: most bytes of an uploaded archive.
@@ -72,6 +74,8 @@ class ServiceSettings:
     restart_within_s: float = 600.0
     store_bytes: int | None = None
     reserve_bytes: int = 256 << 20
+    worker_silence_s: float = 30.0
+    worker_stall_s: float = 600.0
     log_format: str = "text"
     log_level: str = "warning"
     upload_bytes: int = 1 << 30

@@ -1,3 +1,4 @@
+import threading
 import time
 from multiprocessing import Pipe
 
@@ -28,6 +29,26 @@ def test_a_command_that_waits_is_seen_without_taking_it() -> None:
 
     assert inbox.pending
     assert inbox.next(wait=False) == "pause"
+    service.close()
+
+
+def test_every_look_counts_and_waiting_is_told() -> None:
+    service, worker = Pipe()
+    inbox = Inbox(worker)
+    seen = []
+    for look in (lambda: inbox.pending, lambda: inbox.quitting, lambda: inbox.next(wait=False)):
+        look()
+        seen.append((inbox.looks, inbox.is_waited_for))
+    assert seen == [(1, False), (2, False), (3, False)]
+    waiting = threading.Thread(target=inbox.next, args=(True,))
+    waiting.start()
+    deadline = time.monotonic() + 5.0
+    while not inbox.is_waited_for and time.monotonic() < deadline:
+        time.sleep(0.001)
+    assert inbox.is_waited_for
+    service.send("go on")
+    waiting.join(5.0)
+    assert not inbox.is_waited_for
     service.close()
 
 

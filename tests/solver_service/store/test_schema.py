@@ -72,8 +72,8 @@ def test_the_bytes_of_an_owner_are_those_of_its_own_runs(tmp_path: Path, owner: 
     with closing(sqlite3.connect(path)) as rows:
         for run, whose, size in (("r1", "a", 10), ("r2", "b", 200), ("r3", "b", 3000)):
             rows.execute(
-                'INSERT INTO runs (run, "case", case_fingerprint, title, branch_index, status, status_reason, '
-                "duration, output_interval, device, bed_revision, bed_edits, facts, owner) "
+                'INSERT INTO runs (run, "case", case_fingerprint, title, branch_index, status, '
+                "status_reason, duration, output_interval, device, bed_revision, bed_edits, facts, owner) "
                 "VALUES (?, 'c', 'f', 't', 0, 'paused', '', 9.0, 1.0, 'cpu', 0, x'', x'', ?)",
                 (run, whose),
             )
