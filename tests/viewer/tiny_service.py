@@ -57,6 +57,24 @@ def flood(
     return np.maximum(h - (bed.z_b - valley()), 0.0).astype(np.float32)
 
 
+def channel(run: str, index: int, name: protocol.ChannelName) -> bytes:
+    """Velocity and maxima of frame `index`: the water runs east, faster by 0.1 m/s each frame."""
+    h = flood(index)
+    layout = protocol.BlockLayout(NROWS, NCOLS)
+    states = layout.classify((h > 0.0).astype(np.uint16))
+    if name == "velocity":
+        fields = {"u": np.where(h > 0.0, 0.1 * index, 0.0).astype(np.float32), "v": np.zeros_like(h)}
+    else:
+        came = np.maximum(np.arange(NCOLS) - 7, 0) // 2 * INTERVAL
+        fields = {
+            "max_depth": h,
+            "max_speed": np.where(h > 0.0, 0.1 * index, 0.0).astype(np.float32),
+            "max_hazard": np.where(h > 0.0, 2.5, 0.0).astype(np.float32),
+            "arrival_time": np.where(h > 0.0, came[None, :], np.inf).astype(np.float32),
+        }
+    return protocol.encode_channel(layout, run, index, index * INTERVAL, name, fields, states)
+
+
 @dataclass
 class TinyRun:
     info: protocol.RunInfo
@@ -74,6 +92,8 @@ class TinyService:
         computed: number of frames that are computed; tests raise it.
         is_streaming: whether frames are sent; tests hold them back.
         presented: every view that a viewer presented.
+        channels: what its runs keep beside the depth.
+        channels_asked: index and name of every channel that was asked for.
         hellos: every hello that came, so that tests see what a viewer said when it came back.
     """
 
@@ -81,6 +101,8 @@ class TinyService:
         self.computed = computed
         self.is_streaming = True
         self.hellos: list[protocol.Hello] = []
+        self.channels: tuple[protocol.ChannelName, ...] = ("velocity", "maxima")
+        self.channels_asked: list[tuple[int, str]] = []
         self.presented: list[protocol.View | None] = []
         self.authorizations: list[str | None] = []
         self.runs: dict[str, TinyRun] = {}
@@ -120,6 +142,7 @@ class TinyService:
                 device="cpu",
                 hypothetical=True,
                 depth_wet=0.001,
+                channels=self.channels,
                 parent=None if parent is None else parent.info.run,
                 branch_index=None if parent is None else branch_index,
                 lineage=(*lineage, protocol.LineageEntry(run, branch_index)),
@@ -204,6 +227,8 @@ class TinyService:
                         ]
                     run = self.add_run()
                     return [protocol.Ack(message.id, {"run": run.info.run}), protocol.RunChanged(run.info)]
+                case protocol.GetChannel():
+                    return self._channel(message)
                 case protocol.GetTerrain():
                     parts = encode_terrain(message.id, message.run, valley())
                     return [protocol.Ack(message.id), *parts]
@@ -267,6 +292,19 @@ class TinyService:
             protocol.EditsChanged(child.info.run, log.revision, log.edits, log.can_undo, log.can_redo),
             protocol.RunChanged(parent.info),
         ]
+
+    def _channel(self, message: protocol.GetChannel) -> list[protocol.ServerMessage]:
+        self.channels_asked.append((message.index, message.channel))
+        if message.index >= self.computed or message.channel not in self.channels:
+            return [
+                protocol.Error(message.id, "not_kept", f"Frame {message.index} has no {message.channel}.")
+            ]
+        holder = self.holder(message.run, message.index).info.run
+        packed = channel(holder, message.index, message.channel)
+        size = protocol.limits.PART_BYTES
+        chunks = [packed[at : at + size] for at in range(0, len(packed), size)]
+        parts = [protocol.ChannelPart(message.id, k, len(chunks), data) for k, data in enumerate(chunks)]
+        return [protocol.Ack(message.id), *parts]
 
     def _control(
         self, message: protocol.PauseRun | protocol.ResumeRun | protocol.StopRun

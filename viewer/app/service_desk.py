@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Callable, Sequence
+from typing import Protocol, cast
 
 import protocol
 from viewer.app.run_book import RunBook
@@ -60,6 +60,7 @@ class ServiceDesk:
         devices: devices that a run may ask for.
         server: name and version of the service; empty before it said them.
         session: the name the service gave this connection.
+        channel_came: called with every channel that comes.
     """
 
     def __init__(self, connection: ConnectionThread, listener: ServiceListener) -> None:
@@ -69,6 +70,7 @@ class ServiceDesk:
         self._listener = listener
         self._link = ServiceLink(connection, listener.say)
         self._heard_at: float | None = None
+        self.channel_came: Callable[[protocol.ChannelReceived], None] = lambda message: None
         self._awaits_welcome = False
         self.server = ""
         self.session = ""
@@ -153,6 +155,27 @@ class ServiceDesk:
         self._link.send(lambda number: protocol.GetTerrain(number, run=run), "fetch the terrain")
         if "imagery" in info.layers:
             self._fetch_picture(run, "imagery")
+
+    def fetch_channel(
+        self, run: str, index: int, channel: str, numbered: Callable[[int], None], refused: Refusal
+    ) -> bool:
+        """Ask for a channel of a frame; return whether the request left.
+
+        Args:
+            run: id of the run.
+            index: frame index.
+            channel: its name.
+            numbered: told the number that the answer will bear (see `channel_came`).
+            refused: told why there will be no answer.
+        """
+
+        def make(number: int) -> protocol.GetChannel:
+            numbered(number)
+            return protocol.GetChannel(
+                number, run=run, index=index, channel=cast(protocol.ChannelName, channel)
+            )
+
+        return self._link.send(make, f"fetch the {channel}", refused=refused)
 
     def subscribe(self, run: str, from_index: int, mode: protocol.SubscriptionMode) -> None:
         """Ask for the frames of a run from an index on."""
@@ -257,6 +280,8 @@ class ServiceDesk:
                 self._listener.terrain_came(message)
             case protocol.ImageryReceived():
                 self._listener.picture_came(message)
+            case protocol.ChannelReceived():
+                self.channel_came(message)
             case protocol.Progress():
                 self.book.progress[message.run] = message
             case protocol.ViewPresented():

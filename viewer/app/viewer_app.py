@@ -12,6 +12,7 @@ import time as wall_clock
 
 import protocol
 from viewer.app.camera_work import CameraWork
+from viewer.app.channel_feed import ChannelFeed
 from viewer.app.comparison import Comparison
 from viewer.app.edit_report import edit_overlay
 from viewer.app.hud_writer import HudWriter
@@ -54,7 +55,7 @@ from viewer.commands import (
     Undo,
 )
 from viewer.errors import ViewerError
-from viewer.net import ConnectionThread, FrameLoader
+from viewer.net import ChannelLoader, ConnectionThread, FrameLoader
 from viewer.render import FrameInputs, RenderOptions
 from viewer.view_status import ViewStatus
 from viewer.world import Heightfield, MapView, PlaybackClock
@@ -113,7 +114,7 @@ class ViewerApp:
         self._map_maker = MapMaker()
         self._traffic = Traffic()
         self._levee_watch = LeveeWatch()
-        self.water = WaterView()
+        self.water = WaterView(self.feed, ChannelFeed(self.desk, ChannelLoader()))
         self.comparison = Comparison(self.desk, loader, self.feed, self.control.resubscribe)
         self.control.resuming = self.comparison.return_stream
         self.control.editing.reach = self._click_reach
@@ -254,6 +255,7 @@ class ViewerApp:
         """End the network and the decoding. May be called twice."""
         self.desk.close()
         self.loader.close()
+        self.water.close()
 
     def complain(self, sentence: str) -> None:
         """Show a sentence in the status line."""
@@ -354,7 +356,7 @@ class ViewerApp:
         if self.shown is None:
             return status
         status = run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch)
-        status = self.water.told(status, self.options)
+        status = self.water.told(status, self.shown, self.options)
         other = self.comparison.other
         compared = dataclasses.replace(status, compared_run=None if other is None else other.run)
         measured = self.measuring.report(compared, self.shown)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from viewer.lod.block_tiling import Border
 from viewer.units import METRIC, Units
 from viewer.world.camera import Camera
+from viewer.world.flow_arrows import FlowField
 from viewer.world.water_scales import ClassScale, WaterColour
 
 __all__ = [
@@ -220,6 +221,8 @@ class FrameInputs:
     """Colours ground and water by the difference to another run."""
     colouring: Colouring | None = None
     """Colours the water in classes; None leaves it natural."""
+    flow: FlowField | None = None
+    """Arrows on the water; None draws none."""
     is_outdated: bool = False
     """The flood may have gone on unseen, say since the service is gone: the scene is drawn in grey."""
 

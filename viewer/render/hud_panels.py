@@ -14,6 +14,7 @@ __all__ = [
     "banner_panel",
     "depth_ramp_panel",
     "difference_panel",
+    "flow_panel",
     "legend_panel",
     "natural_water_colour",
     "nice_length",
@@ -141,6 +142,19 @@ def difference_panel(other: str, scale: float) -> Image.Image:
         y = margin + k * row
         draw.rectangle((margin, y + 2, margin + box, y + row - 3), fill=(*colour, 255))
         draw.text((margin + box + gap, y), text, font=_font(size), fill=_SOFT_INK)
+    return image
+
+
+def flow_panel(speed: str, length: float, scale: float) -> Image.Image:
+    """An arrow as long as one of that speed is on the picture, seen from above."""
+    size, margin = round(15 * scale), round(_MARGIN * scale)
+    text = f"Flow: {speed}"
+    gap, height = round(12 * scale), round(22 * scale) + margin
+    image, draw = _plate(round(length) + gap + _extent(text, size)[0] + 2 * margin, height)
+    x, y, end, half = margin, height / 2, margin + length, 5.0 * scale
+    draw.line((x, y, end - half, y), fill=_INK, width=max(2, round(3 * scale)))
+    draw.polygon([(end, y), (end - 1.8 * half, y - half), (end - 1.8 * half, y + half)], fill=_INK)
+    draw.text((end + gap, y), text, font=_font(size), fill=_INK, anchor="lm")
     return image
 
 

@@ -15,6 +15,7 @@ from viewer.render import hud_panels
 from viewer.render.frame_inputs import FrameInputs, HudText
 from viewer.render.shader_library import build_program, set_uniforms
 from viewer.world.camera import Camera
+from viewer.world.flow_arrows import LONGEST_PX, arrow_speed
 
 __all__ = ["HudPass"]
 
@@ -99,6 +100,15 @@ class HudPass:
             )
             above = self._panels["legend"].texture.height + edge // 2 if "legend" in self._panels else 0
             self._blit(texture, size, edge, size[1] - texture.height - edge - above)
+            draws += 1
+        if hud.legend and inputs.flow is not None:
+            speed = arrow_speed(inputs.flow.fast)
+            text, length = inputs.options.units.speed_text(speed), LONGEST_PX * size[1] / 720.0
+            texture = self._panel(
+                "flow", (text, length, scale), lambda: hud_panels.flow_panel(text, length, scale)
+            )
+            right = size[0] - texture.width - edge
+            self._blit(texture, size, right, size[1] - texture.height - edge - round(66 * scale))
             draws += 1
         if hud.scale_and_north:
             says_where = (*_scale_and_bearing(inputs.camera, size), scale, inputs.options.units)

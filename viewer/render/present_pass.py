@@ -28,6 +28,7 @@ class PresentPass:
         size: tuple[int, int],
         scene: moderngl.Texture,
         is_outdated: bool = False,
+        columns: tuple[int, int, int, int] | None = None,
     ) -> int:
         """Draw, and return the number of draws.
 
@@ -36,13 +37,16 @@ class PresentPass:
             size: its size now [pixels]; a window's framebuffer object may remember an older one.
             scene: the finished scene.
             is_outdated: draw it in grey.
+            columns: rectangle to draw in: left, lower, width, height [pixels]; None for all.
         """
         target.use()
         target.viewport = (0, 0, *size)
         self._ctx.enable_only(moderngl.NOTHING)
         scene.use(0)
         set_uniforms(self._program, outdated=is_outdated)
+        self._ctx.scissor = columns
         self._array.render(moderngl.TRIANGLES, vertices=3)
+        self._ctx.scissor = None
         return 1
 
     def release(self) -> None:

@@ -15,7 +15,8 @@ import numpy.typing as npt
 from viewer.lod import Selection
 from viewer.render.block_passes import BlockPasses
 from viewer.render.context import check_context
-from viewer.render.frame_inputs import FrameInputs, FrameStats, RenderOptions
+from viewer.render.flow_pass import FlowPass
+from viewer.render.frame_inputs import FrameInputs, FrameStats, RenderOptions, WaterPair
 from viewer.render.frame_uniforms import sun_direction
 from viewer.render.ground_textures import GroundTextures
 from viewer.render.hud_pass import HudPass
@@ -27,10 +28,12 @@ from viewer.render.sky import SkyPass
 from viewer.render.water_textures import WaterSlot, combined_states
 from viewer.world.camera import Camera
 from viewer.world.coordinates import Point, WorldFrame
+from viewer.world.flow_arrows import Arrows, FlowField, flow_arrows
 from viewer.world.heightfield import Heightfield
 
 __all__ = ["Renderer"]
 
+WHOLE = (0.0, 1.0)
 _SKIRT_SHARE = 0.012
 """Height of the map's walls below the lowest ground, as a share of the map's longer side."""
 
@@ -59,6 +62,7 @@ class Renderer:
         self._blocks = BlockPasses(ctx, heightfield, RenderOptions.block_size, RenderOptions.border)
         self._lines = LinePass(ctx, heightfield)
         self._sky = SkyPass(ctx)
+        self._flow = FlowPass(ctx)
         self._present = PresentPass(ctx)
         self._hud = HudPass(ctx)
         map_size = max(heightfield.z_b.shape) * heightfield.grid.dx
@@ -67,13 +71,20 @@ class Renderer:
         self._picture_size = (1, 1)
         self._unprojection: Unprojection | None = None
 
-    def draw(self, target: moderngl.Framebuffer, size: tuple[int, int], inputs: FrameInputs) -> FrameStats:
+    def draw(
+        self,
+        target: moderngl.Framebuffer,
+        size: tuple[int, int],
+        inputs: FrameInputs,
+        part: tuple[float, float] = WHOLE,
+    ) -> FrameStats:
         """Draw one picture.
 
         Args:
             target: framebuffer to end in, say a window's default one.
             size: its width and height [pixels].
             inputs: everything the picture depends on.
+            part: from which share of the width to which to draw; the rest of the target stays as it is.
 
         Returns:
             what it cost.
@@ -109,10 +120,11 @@ class Renderer:
             np.asarray(np.linalg.inv(projection @ view), dtype=np.float64), scene.size, frame
         )
         blocks.uniforms.write(inputs, frame, projection @ view, scene.size, self._skirt_foot)
+        scene.framebuffer.scissor = _columns(scene.size, part)  # type: ignore[assignment]
         draws = self._draw_scene(scene, inputs, selection, slots, projection, view)
         scene.resolve()
         self._picture_size = size
-        draws += self._present.draw(target, size, scene.colour, inputs.is_outdated)
+        draws += self._present.draw(target, size, scene.colour, inputs.is_outdated, _columns(size, part))
         draws += self._hud.draw(target, size, inputs)
         done = perf_counter()
         stats = selection.stats
@@ -173,7 +185,8 @@ class Renderer:
 
     def release(self) -> None:
         """Give all graphics memory back."""
-        for thing in (self._blocks, self._lines, self._sky, self._present, self._hud, self._ground):
+        passes = (self._blocks, self._lines, self._flow, self._sky, self._present, self._hud)
+        for thing in (*passes, self._ground):
             thing.release()
         if self._target is not None:
             self._target.release()
@@ -209,6 +222,9 @@ class Renderer:
             rotation = view.copy()
             rotation[:3, 3] = 0.0
             draws += self._sky.draw(np.asarray(np.linalg.inv(projection @ rotation), dtype=np.float64))
+        if inputs.flow is not None and inputs.water is not None and slots is not None:
+            arrows = self._arrows(inputs, inputs.water, inputs.flow, scene.size)
+            draws += self._flow.draw(self._ground, slots, inputs.water.alpha, arrows)
         if inputs.edits is not None:
             alpha = 0.0 if inputs.water is None else inputs.water.alpha
             draws += self._lines.draw(self._ground, inputs.edits.lines, slots, alpha, options.render_scale)
@@ -221,6 +237,14 @@ class Renderer:
             self._blocks.release()
             self._blocks = BlockPasses(self._ctx, self._heightfield, options.block_size, options.border)
         return self._blocks
+
+    def _arrows(
+        self, inputs: FrameInputs, water: WaterPair, flow: FlowField, size: tuple[int, int]
+    ) -> Arrows:
+        frame = self._heightfield.frame.exaggerated(inputs.options.exaggeration)
+        depths = water.first.h, water.second.h
+        aspect = size[0] / size[1]
+        return flow_arrows(inputs.camera, aspect, self._heightfield, frame, depths, flow, water.alpha)
 
     def _scene_target(self, size: tuple[int, int], samples: int) -> RenderTarget:
         target = self._target
@@ -242,6 +266,14 @@ class Renderer:
         near = min(near, 1e5)
         # The walls of the map reach below the boxes.
         return near, max(1.2 * selection.distance_max, 2.0 * near)
+
+
+def _columns(size: tuple[int, int], part: tuple[float, float]) -> tuple[int, int, int, int] | None:
+    """The rectangle of a part of the width, from the lower left; None for all of it."""
+    if part == WHOLE:
+        return None
+    first, end = (round(size[0] * share) for share in part)
+    return first, 0, end - first, size[1]
 
 
 def _scaled(size: tuple[int, int], scale: float) -> tuple[int, int]:

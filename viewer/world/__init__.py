@@ -4,6 +4,7 @@ from viewer.world.camera import Camera, GroundHeight, overview
 from viewer.world.coordinates import Point, WorldFrame
 from viewer.world.edit_document import EditDocument, EditPreview
 from viewer.world.edit_measures import EditMeasure, measure_edits
+from viewer.world.flow_arrows import Arrows, FlowField, arrow_speed, flow_arrows
 from viewer.world.frame_cache import FrameCache
 from viewer.world.frustum import Frustum
 from viewer.world.heightfield import Heightfield, Rect, union_rect
@@ -25,6 +26,7 @@ from viewer.world.water_timeline import Bracket, WaterTimeline
 
 __all__ = [
     "DEPTH_SCALE",
+    "Arrows",
     "Bracket",
     "Camera",
     "ClassScale",
@@ -32,6 +34,7 @@ __all__ = [
     "EditMeasure",
     "EditPreview",
     "Flight",
+    "FlowField",
     "FrameCache",
     "Frustum",
     "GroundHeight",
@@ -49,9 +52,11 @@ __all__ = [
     "WaterTimeline",
     "WorldFrame",
     "arrival_scale",
+    "arrow_speed",
     "bed_with",
     "blended_bed",
     "flood_extent",
+    "flow_arrows",
     "ground_in_view",
     "hazard_rating",
     "measure",

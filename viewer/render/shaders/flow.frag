@@ -1,0 +1,7 @@
+#version 410 core
+uniform vec4 tint;
+out vec4 colour;
+
+void main() {
+    colour = tint;
+}
