@@ -34,11 +34,13 @@ class Patience:
 
     Attributes:
         silence_s: without a pulse [s].
-        stall_s: with pulses, but at one and the same thing [s]; and until the first pulse.
+        stall_s: with pulses, but at one and the same thing [s].
+        start_s: from the start of the process to its first pulse [s].
     """
 
     silence_s: float = 30.0
     stall_s: float = 600.0
+    start_s: float = 120.0
 
 
 class Watched(Protocol):
@@ -105,7 +107,7 @@ class WorkerWatch:
 
     def _verdict(self, worker: Watched, now: float) -> str | None:
         silent_s, stalled_s = now - worker.pulse_at, now - worker.advanced_at
-        if silent_s > (self._patience.silence_s if worker.has_pulse else self._patience.stall_s):
+        if silent_s > (self._patience.silence_s if worker.has_pulse else self._patience.start_s):
             return f"its worker process gave no sign for {silent_s:.0f} s and was ended"
         if worker.is_ready and stalled_s > self._patience.stall_s:
             return f"its worker did one and the same thing for {stalled_s:.0f} s and was ended"

@@ -52,8 +52,8 @@ def looked_at(worker: Process, until: float, signs: dict[str, bool]) -> Process:
         (Process(), ["pulse_at", "advanced_at"], 5000.0, None),
         (Process(is_ready=False), ["pulse_at"], 5000.0, None),  # it compiles its kernels
         (Process(is_ready=False), [], 31.0, "gave no sign"),
-        (Process(has_pulse=False, is_ready=False), [], 600.0, None),  # it is still importing
-        (Process(has_pulse=False, is_ready=False), [], 601.0, "gave no sign"),
+        (Process(has_pulse=False, is_ready=False), [], 120.0, None),  # it is still importing
+        (Process(has_pulse=False, is_ready=False), [], 121.0, "gave no sign"),
     ],
 )
 def test_a_worker_is_ended_when_it_shows_nothing_for_longer_than_allowed(
@@ -95,7 +95,7 @@ def impatient(tmp_path_factory: pytest.TempPathFactory, case: str) -> Iterator[S
         cases=(case,),
         threads=2,
         checkpoint_interval_s=0.02,
-        patience=Patience(silence_s=2.0, stall_s=2.5),
+        patience=Patience(silence_s=3.0, stall_s=3.0),
     )
     yield service
     service.close()
@@ -112,7 +112,7 @@ def test_a_worker_that_is_stopped_is_told_and_another_goes_on_with_the_very_byte
     os.kill(run.worker.pid, signal.SIGSTOP)
     begun = time.monotonic()
     impatient.wait(lambda: bool(impatient.notices(run.run)))
-    assert 1.0 < time.monotonic() - begun < 8.0
+    assert 1.0 < time.monotonic() - begun < 30.0
     assert "its worker process gave no sign for" in impatient.notices(run.run)[0]
     assert "going on from the last checkpoint (restart 1 of 3)" in impatient.notices(run.run)[0]
     assert frozen.is_dead
