@@ -64,7 +64,7 @@ def test_start_watch_draw_recalculate_and_see_the_change(
 
     app.dispatch(Seek(15.0))
     app.dispatch(ChangeEditSettings(width=30.0, magnitude=25.0))
-    qtbot.mouseClick(window.edit_panel.draw, Qt.MouseButton.LeftButton)
+    window.edit_panel.line.trigger()
     qtbot.waitUntil(lambda: app.fresh_status().is_drawing)
     scene, grid = window.scene, app.shown.grid if app.shown is not None else None
     assert grid is not None

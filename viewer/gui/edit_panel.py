@@ -1,107 +1,131 @@
-"""Draw levees and trenches, take them back, and recalculate."""
+"""Draw levees, trenches and areas, select and change them, take them back, and recalculate."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QAction, QColor, QKeySequence
+from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import (
-    QButtonGroup,
-    QDoubleSpinBox,
-    QFormLayout,
+    QFileDialog,
     QHBoxLayout,
+    QInputDialog,
     QLabel,
-    QListWidget,
-    QListWidgetItem,
+    QLineEdit,
     QPushButton,
-    QSizePolicy,
     QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
-from viewer.commands import BeginEdit, CancelEdit, ChangeEditSettings, FinishEdit, Recalculate, Redo, Undo
+from viewer.commands import (
+    BeginEdit,
+    BeginLevelPick,
+    BeginSelect,
+    CancelEdit,
+    ChangeEdit,
+    ChangeEditSettings,
+    Command,
+    DeleteEdit,
+    FinishEdit,
+    FlyTo,
+    LoadEdits,
+    Recalculate,
+    Redo,
+    RenameEdit,
+    SaveEdits,
+    SelectEdit,
+    Undo,
+)
 from viewer.gui.conductor import Dispatch
-from viewer.gui.theme import BRANCH
+from viewer.gui.edit_form import EditForm
+from viewer.gui.edit_list_view import EditListView
 from viewer.view_status import EditRow, ViewStatus, time_text
 
 __all__ = ["EditPanel"]
+
+_FILES = "GeoJSON (*.geojson *.json)"
 
 
 class EditPanel(QWidget):
     """The terrain edit dock.
 
     Attributes:
-        undo, redo, recalculate: actions, also for the window's menu.
+        line, area, select: the tools, checked while they are in hand.
+        finish, undo, redo, rename, delete, save, load, recalculate: actions, also for the window's menu.
     """
 
     def __init__(self, dispatch: Dispatch, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._dispatch = dispatch
-        self.draw = QPushButton("Draw edit line")
-        self.draw.setCheckable(True)
-        self.draw.setToolTip(
-            "Click points on the ground; double click or Enter finishes, Esc drops the line (B)"
+        self._status = ViewStatus()
+        how = "a click sets a point, a drag draws free-hand; double click or Enter finishes, Esc drops"
+        self.line = self._tool("line", "B", f"Draw a line: {how}", BeginEdit("line"))
+        self.area = self._tool(
+            "area", "Shift+B", f"Draw an area: {how}; so does a click on its first point", BeginEdit("area")
         )
-        self.draw.clicked.connect(lambda on: dispatch(BeginEdit() if on else CancelEdit()))
-        self.finish = QPushButton("Finish line")
-        self.finish.setToolTip("Take the drawn line into the list (Enter)")
-        self.finish.clicked.connect(lambda: dispatch(FinishEdit()))
-        self.width_m = self._number("Width", 1.0, 1000.0, " m", lambda value: ChangeEditSettings(width=value))
-        self.magnitude_m = self._number(
-            "Magnitude", 0.1, 200.0, " m", lambda value: ChangeEditSettings(magnitude=value)
+        self.select = self._tool(
+            "select",
+            "X",
+            "Click an edit to select it, drag it or one of its points to move it",
+            BeginSelect(),
         )
-        self.operation = _Choice(
-            "Operation",
-            {"raise": ("Raise", "A levee: lift the ground"), "lower": ("Lower", "A trench: cut the ground")},
-            lambda name: dispatch(ChangeEditSettings(operation=name)),
+        self.finish = self._action("Finish", None, "Take what is drawn into the list (Enter)", FinishEdit())
+        self.undo = self._action("Undo", QKeySequence.StandardKey.Undo, "Take the last change back", Undo())
+        self.redo = self._action("Redo", "Ctrl+Y", "Make it again", Redo())
+        self.rename = self._asking("Rename ...", "F2", "Give the selected edit a name", self._rename)
+        self.delete = self._action("Delete", "Del", "Take the selected edit out of the list", DeleteEdit())
+        self.save = self._asking("Save edits ...", None, "Write the list to a GeoJSON file", self._save)
+        self.load = self._asking("Load edits ...", None, "Add the edits of a GeoJSON file", self._load)
+        now = "Compute anew with these edits from the time shown"
+        self.recalculate = self._action("Recalculate from now", "Ctrl+R", now, Recalculate())
+        self.heading = QLabel("")
+        self.heading.setObjectName("faint")
+        self.form = EditForm(self._change, self._pick_level)
+        self.edits = EditListView(
+            lambda name: dispatch(SelectEdit(name)), lambda centre: dispatch(FlyTo(*centre)), self
         )
-        self.kind = _Choice(
-            "Type",
-            {
-                "modulate": ("Follow ground", "Modulate: add the magnitude to the ground as it is"),
-                "replace": ("Straight crest", "Replace: an even crest or floor between the drawn points"),
-            },
-            lambda name: dispatch(ChangeEditSettings(type=name)),
-        )
-        self.edits = QListWidget()
-        self.edits.setAccessibleName("Edits")
-        self.edits.setToolTip("Edits of the shown run; a new one counts from the next Recalculate on")
-        self.edits.setMinimumHeight(60)
-        self.edits.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
-        self.edits.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.edits.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.undo = self._action("Undo edit", QKeySequence.StandardKey.Undo, Undo())
-        self.redo = self._action("Redo edit", QKeySequence("Ctrl+Y"), Redo())
-        self.recalculate = self._action("Recalculate from now", QKeySequence("Ctrl+R"), Recalculate())
+        self.edits.add_to_menu([self.rename, self.delete])
         self.recalculate_button = QPushButton("Recalculate")
         self.recalculate_button.setObjectName("primary")
-        self.recalculate_button.setToolTip("Compute anew with these edits from the time shown (Ctrl+R)")
+        self.recalculate_button.setToolTip(f"{now} (Ctrl+R)")
         self.recalculate_button.clicked.connect(self.recalculate.trigger)
         self.note = QLabel("")
         self.note.setObjectName("faint")
         self.note.setWordWrap(True)
         self._lay_out()
 
+    def menu_actions(self) -> list[QAction | None]:
+        """Return the actions for a menu; None stands for a line between two groups."""
+        return [
+            *(self.line, self.area, self.select, self.finish, None),
+            *(self.undo, self.redo, self.rename, self.delete, None),
+            *(self.save, self.load, None),
+            self.recalculate,
+        ]
+
     def show_status(self, status: ViewStatus) -> None:
         """Show the tool, its settings and the list of edits."""
+        self._status = status
         self.setEnabled(status.has_terrain)
-        self.draw.setChecked(status.is_drawing)
-        self.finish.setEnabled(status.is_drawing and status.drawn_vertices >= 2)
-        settings = status.edit_settings
-        for box, value in ((self.width_m, settings.width), (self.magnitude_m, settings.magnitude)):
-            if not box.hasFocus():
-                blocked = box.blockSignals(True)
-                box.setValue(value)
-                box.blockSignals(blocked)
-        self.operation.show_choice(settings.operation)
-        self.kind.show_choice(settings.type)
-        texts = [_row_text(row) for row in status.edits]
-        if texts != [self.edits.item(row).text() for row in range(self.edits.count())]:
-            self.edits.clear()
-            for text, row in zip(texts, status.edits, strict=True):
-                item = QListWidgetItem(text, self.edits)
-                if row.warning:
-                    item.setForeground(QColor(BRANCH))
+        for name, action in (("line", self.line), ("area", self.area), ("select", self.select)):
+            action.setEnabled(status.has_terrain)
+            action.setChecked(status.edit_tool == name)
+        needed = 3 if status.edit_tool == "area" else 2
+        self.finish.setEnabled(status.is_drawing and status.drawn_vertices >= needed)
+        chosen = self._chosen()
+        settings = status.edit_settings if chosen is None else chosen.settings
+        kind = status.edit_tool if chosen is None else chosen.kind
+        self.form.show_settings(
+            settings, status.units, is_area=kind == "area", picks_level=status.edit_tool == "level"
+        )
+        self.heading.setText("Next edit" if chosen is None else f"Selected: {chosen.name or chosen.text}")
+        self.edits.show_rows(status.edits, status.undone_edits, status.selected_edit)
+        self.rename.setEnabled(chosen is not None)
+        self.delete.setEnabled(chosen is not None)
+        self.save.setEnabled(bool(status.edits))
+        self.load.setEnabled(status.has_terrain)
         self.undo.setEnabled(status.can_undo)
         self.redo.setEnabled(status.can_redo)
         self.recalculate.setEnabled(status.can_recalculate)
@@ -111,88 +135,102 @@ class EditPanel(QWidget):
         )
         self.note.setText(_note(status))
 
-    def _number(self, name: str, low: float, high: float, suffix: str, command: object) -> QDoubleSpinBox:
-        box = QDoubleSpinBox()
-        box.setAccessibleName(name)
-        box.setRange(low, high)
-        box.setDecimals(1)
-        box.setSuffix(suffix)
-        box.setKeyboardTracking(False)
-        assert callable(command)
-        box.valueChanged.connect(lambda value: self._dispatch(command(value)))
-        return box
+    def _chosen(self) -> EditRow | None:
+        return next((row for row in self._status.edits if row.id == self._status.selected_edit), None)
+
+    def _change(self, **settings: Any) -> None:
+        """Change the selected edit, or what the next one will be."""
+        chosen = self._chosen()
+        if chosen is None:
+            self._dispatch(ChangeEditSettings(**settings))
+        else:
+            self._dispatch(ChangeEdit(**settings, edit=chosen.id))
+
+    def _pick_level(self) -> None:
+        self._dispatch(CancelEdit() if self._status.edit_tool == "level" else BeginLevelPick())
+
+    def _rename(self) -> None:
+        chosen = self._chosen()
+        if chosen is None:
+            return
+        name, is_given = QInputDialog.getText(
+            self, "Rename the edit", "Name", QLineEdit.EchoMode.Normal, chosen.name
+        )
+        if is_given:
+            self._dispatch(RenameEdit(name, chosen.id))
+
+    def _save(self) -> None:
+        path, _ = QFileDialog.getSaveFileName(self, "Save edits", "edits.geojson", _FILES)
+        if path:
+            self._dispatch(SaveEdits(path))
+
+    def _load(self) -> None:
+        path, _ = QFileDialog.getOpenFileName(self, "Load edits", "", _FILES)
+        if path:
+            self._dispatch(LoadEdits(path))
+
+    def _tool(self, name: str, shortcut: str, tip: str, begin: Command) -> QAction:
+        def triggered() -> None:
+            self._dispatch(CancelEdit() if self._status.edit_tool == name else begin)
+
+        action = self._asking(name.capitalize(), shortcut, f"{tip} ({shortcut})", triggered)
+        action.setCheckable(True)
+        return action
 
     def _action(
-        self, text: str, shortcut: QKeySequence | QKeySequence.StandardKey, command: object
+        self, text: str, shortcut: str | QKeySequence.StandardKey | None, tip: str, command: Command
+    ) -> QAction:
+        return self._asking(text, shortcut, tip, lambda: self._dispatch(command))
+
+    def _asking(
+        self,
+        text: str,
+        shortcut: str | QKeySequence.StandardKey | None,
+        tip: str,
+        asked: Callable[[], None],
     ) -> QAction:
         action = QAction(text, self)
-        action.setShortcut(QKeySequence(shortcut))
-        action.setShortcutContext(Qt.ShortcutContext.WindowShortcut)
-        action.triggered.connect(lambda: self._dispatch(command))  # type: ignore[arg-type]
+        action.setToolTip(tip)
+        if shortcut is not None:
+            action.setShortcut(QKeySequence(shortcut))
+            action.setShortcutContext(Qt.ShortcutContext.WindowShortcut)
+        action.triggered.connect(lambda: asked())
         return action
 
     def _lay_out(self) -> None:
-        drawing = QHBoxLayout()
-        drawing.addWidget(self.draw)
-        drawing.addWidget(self.finish)
-        form = QFormLayout()
-        form.addRow("Width", self.width_m)
-        form.addRow("Magnitude", self.magnitude_m)
-        form.addRow("Operation", self.operation)
-        form.addRow("Type", self.kind)
-        history = QHBoxLayout()
-        for action in (self.undo, self.redo):
-            button = QToolButton()
-            button.setDefaultAction(action)
-            history.addWidget(button)
-        history.addStretch(1)
         layout = QVBoxLayout(self)
-        layout.addLayout(drawing)
-        layout.addLayout(form)
+        layout.addLayout(_buttons(self.line, self.area, self.select, self.finish))
+        layout.addWidget(self.heading)
+        layout.addWidget(self.form)
         layout.addWidget(self.edits, 1)
-        layout.addLayout(history)
+        layout.addLayout(_buttons(self.undo, self.redo, self.delete))
+        layout.addLayout(_buttons(self.rename, self.save, self.load))
         layout.addWidget(self.recalculate_button)
         layout.addWidget(self.note)
 
 
-class _Choice(QWidget):
-    """Two or more exclusive buttons side by side."""
-
-    def __init__(self, name: str, choices: dict[str, tuple[str, str]], chosen: object) -> None:
-        super().__init__()
-        assert callable(chosen)
-        self.buttons: dict[str, QPushButton] = {}
-        group = QButtonGroup(self)
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(4)
-        for key, (label, tip) in choices.items():
-            button = QPushButton(label)
-            button.setCheckable(True)
-            button.setToolTip(tip)
-            button.setAccessibleName(f"{name}: {label}")
-            button.clicked.connect(lambda _on, key=key: chosen(key))
-            group.addButton(button)
-            layout.addWidget(button)
-            self.buttons[key] = button
-
-    def show_choice(self, key: str) -> None:
-        """Press the button of `key`."""
-        if key in self.buttons:
-            self.buttons[key].setChecked(True)
-
-
-def _row_text(row: EditRow) -> str:
-    first = f"{'' if row.is_applied else 'new: '}{row.text}"
-    return "\n".join(line for line in (first, row.measure, row.warning) if line)
+def _buttons(*actions: QAction) -> QHBoxLayout:
+    row = QHBoxLayout()
+    for action in actions:
+        button = QToolButton()
+        button.setDefaultAction(action)
+        button.setAccessibleName(action.text())
+        row.addWidget(button)
+    row.addStretch(1)
+    return row
 
 
 def _note(status: ViewStatus) -> str:
-    if status.is_drawing:
-        drawn = status.drawn_vertices
-        return (
-            "Click the ground to set points." if drawn == 0 else f"{drawn} points; Enter finishes, Esc drops."
-        )
+    match status.edit_tool:
+        case "line" | "area":
+            drawn = status.drawn_vertices
+            if drawn == 0:
+                return "Click the ground to set points, or drag to draw free-hand."
+            return f"{drawn} points; Enter finishes, Backspace drops the last, Esc drops all."
+        case "select":
+            return "Click an edit; drag it or one of its points. Del deletes, F2 renames, Esc ends."
+        case "level":
+            return "Click on water or ground to take its level."
     if status.recalculate_latency_s is not None:
         return f"First changed frame {status.recalculate_latency_s:.2f} s after Recalculate."
     return ""

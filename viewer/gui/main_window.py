@@ -22,8 +22,6 @@ from PySide6.QtWidgets import (
 )
 
 from viewer.commands import (
-    BeginEdit,
-    CancelEdit,
     Command,
     FlyTo,
     FollowLive,
@@ -53,6 +51,12 @@ __all__ = ["MainWindow"]
 TICK_MS = 16
 DOCK_WIDTH = 340
 MAP_MARGIN = 12
+_CURSORS = {
+    "line": Qt.CursorShape.CrossCursor,
+    "area": Qt.CursorShape.CrossCursor,
+    "level": Qt.CursorShape.WhatsThisCursor,
+    "select": Qt.CursorShape.PointingHandCursor,
+}
 
 
 class MainWindow(QMainWindow):
@@ -140,9 +144,7 @@ class MainWindow(QMainWindow):
             self.connection_panel.show_status(status)
             self.presenting_menu.show_status(status)
             self.setWindowTitle(f"{status.title or 'no run'} - Flood Emergency Visualizer")
-            self.scene.setCursor(
-                Qt.CursorShape.CrossCursor if status.is_drawing else Qt.CursorShape.ArrowCursor
-            )
+            self.scene.setCursor(_CURSORS.get(status.edit_tool, Qt.CursorShape.ArrowCursor))
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """End cleanly: first the picture, then whatever the caller has to close."""
@@ -235,11 +237,8 @@ class MainWindow(QMainWindow):
         self._action(playback, "Previous frame", ",", lambda: self._step(-1))
         self._action(playback, "To the start", "Home", lambda: self._dispatch(Seek(0.0)))
         edits = self.menuBar().addMenu("&Edits")
-        self._action(edits, "Draw edit line", "B", self._toggle_drawing)
-        edits.addAction(self.edit_panel.undo)
-        edits.addAction(self.edit_panel.redo)
-        edits.addSeparator()
-        edits.addAction(self.edit_panel.recalculate)
+        for action in self.edit_panel.menu_actions():
+            edits.addAction(action) if action is not None else edits.addSeparator()
         self.view_menu.add_first([self.water_panel.next_colour, self.water_panel.toggle_arrows])
         self.menuBar().addMenu(self.view_menu)
         self.presenting_menu = PresentingMenu(self._dispatch, self)
@@ -252,9 +251,6 @@ class MainWindow(QMainWindow):
             action.setShortcut(QKeySequence(shortcut))
         action.triggered.connect(lambda: slot())
         return action
-
-    def _toggle_drawing(self) -> None:
-        self._dispatch(CancelEdit() if self._conductor.status().is_drawing else BeginEdit())
 
     def _step(self, frames: int) -> None:
         status = self._conductor.status()

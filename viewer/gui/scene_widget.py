@@ -40,6 +40,7 @@ _KEYS = {
     Qt.Key.Key_Return: "enter",
     Qt.Key.Key_Enter: "enter",
     Qt.Key.Key_Escape: "escape",
+    Qt.Key.Key_Backspace: "backspace",
 }
 
 
@@ -79,7 +80,7 @@ class SceneWidget(QOpenGLWidget):
         self._conductor = conductor
         self._painter = painter
         self._toolbox = Toolbox()
-        self._hover: QPointF | None = None
+        self._hover: tuple[QPointF, Button] | None = None
         self._is_open = False
         self._last_paint = 0.0
         self.frames_per_second = 0.0
@@ -108,10 +109,8 @@ class SceneWidget(QOpenGLWidget):
         self._painter.paint(self.defaultFramebufferObject(), width, height)
         self._count_picture()
         if self._hover is not None:
-            position, self._hover = self._hover, None
-            self._send(
-                self._toolbox.pointer(self._pointer("move", position, "none"), is_drawing=self._is_drawing)
-            )
+            (position, button), self._hover = self._hover, None
+            self._send(self._toolbox.pointer(self._pointer("move", position, button), tool=self._tool))
 
     def release(self) -> None:
         """Release the painter's objects while the context still lives. May be called twice."""
@@ -134,9 +133,10 @@ class SceneWidget(QOpenGLWidget):
         self._mouse("release", event, with_ground=True)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Pass a drag on at once; a bare hover waits for the next picture."""
-        if event.buttons() == Qt.MouseButton.NoButton:
-            self._hover = event.position()
+        """Pass a drag of the camera on at once; a hover and a drag of a tool wait for the next picture."""
+        is_tool_drag = bool(self._tool) and bool(event.buttons() & Qt.MouseButton.LeftButton)
+        if is_tool_drag or event.buttons() == Qt.MouseButton.NoButton:
+            self._hover = (event.position(), "left" if is_tool_drag else "none")
             self.update()
             return
         held = next((button for button in _BUTTONS if event.buttons() & button), Qt.MouseButton.NoButton)
@@ -146,7 +146,7 @@ class SceneWidget(QOpenGLWidget):
         """Pass the wheel on to the tools."""
         steps = event.angleDelta().y() / WHEEL_NOTCH
         pointer = self._pointer("wheel", event.position(), "none", steps=steps)
-        self._send(self._toolbox.pointer(pointer, is_drawing=self._is_drawing))
+        self._send(self._toolbox.pointer(pointer, tool=self._tool))
         event.accept()
 
     def leaveEvent(self, event: QEvent) -> None:
@@ -161,7 +161,7 @@ class SceneWidget(QOpenGLWidget):
         if name is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             super().keyPressEvent(event)
         elif not event.isAutoRepeat():
-            self._send(self._toolbox.key_pressed(name, is_drawing=self._is_drawing))
+            self._send(self._toolbox.key_pressed(name, tool=self._tool))
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """Pass a key on to the tools."""
@@ -177,8 +177,8 @@ class SceneWidget(QOpenGLWidget):
         super().focusOutEvent(event)
 
     @property
-    def _is_drawing(self) -> bool:
-        return self._conductor.status().is_drawing
+    def _tool(self) -> str:
+        return self._conductor.status().edit_tool
 
     def _mouse(
         self,
@@ -188,10 +188,12 @@ class SceneWidget(QOpenGLWidget):
         with_ground: bool,
         button: Qt.MouseButton | None = None,
     ) -> None:
+        if kind != "move":
+            self._hover = None  # what went before a press or a release is over
         name = _BUTTONS.get(event.button() if button is None else button, "none")
         shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         pointer = self._pointer(kind, event.position(), name, shift=shift, with_ground=with_ground)
-        self._send(self._toolbox.pointer(pointer, is_drawing=self._is_drawing))
+        self._send(self._toolbox.pointer(pointer, tool=self._tool))
         event.accept()
 
     def _pointer(

@@ -102,9 +102,10 @@ class LinePass:
 
     def _pieces(self, line: DrapedLine) -> npt.NDArray[np.float32]:
         paths = [line.vertices] if len(line.vertices) > 1 else []
-        if line.style is LineStyle.DRAFT:
+        if line.style in (LineStyle.DRAFT, LineStyle.SELECTED):
             # Rings show where the vertices are and how wide the edit will be.
-            paths += [_ring(vertex, 0.5 * line.width) for vertex in line.vertices]
+            radius = max(0.5 * line.width, self._heightfield.grid.dx)
+            paths += [_ring(vertex, radius) for vertex in line.vertices]
         records = []
         frame = self._heightfield.frame
         for path in paths:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from viewer.commands import Command, DragOrbit, DragPan, GrabView, MoveHover, ProbeAt, Zoom
-from viewer.tools.pointer import PointerEvent
+from viewer.tools.pointer import CLICK_SHARE, PointerEvent
 
 __all__ = ["OrbitTool"]
-
-CLICK_SHARE = 0.006
-"""A press and release nearer than this share of the picture height are a click."""
 
 
 class OrbitTool:

@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["Button", "PointerEvent", "PointerKind"]
+__all__ = ["Button", "Drag", "PointerEvent", "PointerKind"]
+
+CLICK_SHARE = 0.006
+"""A press and release nearer than this share of the picture height are a click."""
 
 PointerKind = Literal["press", "move", "release", "double", "wheel", "leave"]
 Button = Literal["left", "middle", "right", "none"]
@@ -32,3 +35,27 @@ class PointerEvent:
     shift: bool = False
     steps: float = 0.0
     ground: tuple[float, float] | None = None
+
+
+class Drag:
+    """Tells a drag from a click: the pointer has left the place of the press while the button was held."""
+
+    def __init__(self) -> None:
+        self._from: tuple[float, float] | None = None
+        self._is_drag = False
+
+    def begin(self, event: PointerEvent) -> None:
+        """The button went down."""
+        self._from, self._is_drag = (event.x, event.y), False
+
+    def follow(self, event: PointerEvent) -> bool:
+        """The pointer has moved; return whether this is a drag."""
+        if self._from is not None:
+            away = abs(event.x - self._from[0]) + abs(event.y - self._from[1])
+            self._is_drag = self._is_drag or away >= CLICK_SHARE
+        return self._is_drag
+
+    def end(self) -> bool:
+        """The button went up; return whether it was a drag."""
+        was_drag, self._from, self._is_drag = self._is_drag, None, False
+        return was_drag

@@ -1,21 +1,45 @@
+import dataclasses
+
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFileDialog, QInputDialog, QToolButton
 from pytestqt.qtbot import QtBot
 
 from tests.viewer.gui.conftest import Recorder
-from viewer.commands import BeginEdit, CancelEdit, ChangeEditSettings, FinishEdit, Recalculate, Redo, Undo
+from viewer.commands import (
+    BeginEdit,
+    BeginLevelPick,
+    BeginSelect,
+    CancelEdit,
+    ChangeEdit,
+    ChangeEditSettings,
+    DeleteEdit,
+    FinishEdit,
+    FlyTo,
+    LoadEdits,
+    Recalculate,
+    Redo,
+    RenameEdit,
+    SaveEdits,
+    SelectEdit,
+    Undo,
+)
 from viewer.gui.edit_panel import EditPanel
 from viewer.view_status import EditRow, EditSettings, ViewStatus
 
 STATUS = ViewStatus(
     has_terrain=True,
     time=60.0,
-    edits=(EditRow("a", "Raise by 8 m", True), EditRow("b", "Lower by 2 m", False)),
+    edits=(
+        EditRow("a", "Raise by 8 m", True, settings=EditSettings(7.0, 8.0), name="North"),
+        EditRow("b", "Lower by 2 m", False, kind="area"),
+    ),
     can_undo=True,
     can_redo=True,
     can_recalculate=True,
     edit_settings=EditSettings(25.0, 4.0, "lower", "replace"),
 )
+SELECTED = dataclasses.replace(STATUS, selected_edit="a", edit_tool="select")
 
 
 @pytest.fixture
@@ -28,56 +52,128 @@ def panel(qtbot: QtBot, record: Recorder) -> EditPanel:
 
 
 def test_it_shows_settings_and_edits_without_making_commands(panel: EditPanel, record: Recorder) -> None:
-    assert (panel.width_m.value(), panel.magnitude_m.value()) == (25.0, 4.0)
-    assert panel.operation.buttons["lower"].isChecked()
-    assert panel.kind.buttons["replace"].isChecked()
-    assert [panel.edits.item(row).text() for row in range(2)] == ["Raise by 8 m", "new: Lower by 2 m"]
+    assert (panel.form.width_m.value(), panel.form.magnitude_m.value()) == (25.0, 4.0)
+    assert panel.heading.text() == "Next edit"
+    assert [panel.edits.item(row).text() for row in range(2)] == ["North: Raise by 8 m", "new: Lower by 2 m"]
+    panel.show_status(SELECTED)
+    assert (panel.form.width_m.value(), panel.heading.text()) == (7.0, "Selected: North")
+    panel.show_status(dataclasses.replace(SELECTED, selected_edit="b"))
+    assert not panel.form.width_m.isEnabled()
     assert record.commands == []
 
 
-def test_settings_become_commands(panel: EditPanel, record: Recorder) -> None:
-    panel.width_m.setValue(30.0)
-    panel.magnitude_m.setValue(5.0)
-    panel.operation.buttons["raise"].click()
-    panel.kind.buttons["modulate"].click()
+def test_settings_are_those_of_the_next_edit_or_of_the_selected_one(
+    panel: EditPanel, record: Recorder
+) -> None:
+    panel.form.width_m.setValue(30.0)
+    panel.form.crest.buttons["modulate"].click()
+    panel.show_status(SELECTED)
+    panel.form.magnitude_m.setValue(5.0)
 
     assert record.commands == [
         ChangeEditSettings(width=30.0),
-        ChangeEditSettings(magnitude=5.0),
-        ChangeEditSettings(operation="raise"),
-        ChangeEditSettings(type="modulate"),
+        ChangeEditSettings(type="modulate", at_level=False),
+        ChangeEdit(magnitude=5.0, edit="a"),
     ]
 
 
+def test_a_tool_is_taken_and_put_away_by_its_button(panel: EditPanel, record: Recorder) -> None:
+    for name, tool, command in (
+        ("line", panel.line, BeginEdit("line")),
+        ("area", panel.area, BeginEdit("area")),
+        ("select", panel.select, BeginSelect()),
+    ):
+        tool.trigger()
+        assert record.commands.pop() == command
+        panel.show_status(dataclasses.replace(STATUS, edit_tool=name))
+        assert [one.isChecked() for one in (panel.line, panel.area, panel.select)].count(True) == 1
+        assert tool.isChecked()
+        tool.trigger()
+        assert record.commands.pop() == CancelEdit()
+        panel.show_status(STATUS)
+
+
+def test_the_level_is_taken_from_the_picture(panel: EditPanel, record: Recorder) -> None:
+    panel.form.pick.click()
+    panel.show_status(dataclasses.replace(STATUS, edit_tool="level"))
+    assert panel.form.pick.isChecked()
+    panel.form.pick.click()
+    assert record.commands == [BeginLevelPick(), CancelEdit()]
+
+
 def test_buttons_and_actions_become_commands(panel: EditPanel, record: Recorder, qtbot: QtBot) -> None:
-    panel.draw.click()
-    panel.draw.click()
     panel.undo.trigger()
     panel.redo.trigger()
     qtbot.mouseClick(panel.recalculate_button, Qt.MouseButton.LeftButton)
+    assert record.commands == [Undo(), Redo(), Recalculate()]
 
-    assert record.commands == [BeginEdit(), CancelEdit(), Undo(), Redo(), Recalculate()]
+
+def test_an_edit_is_selected_in_the_list_renamed_and_deleted(
+    panel: EditPanel, record: Recorder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert not panel.delete.isEnabled()
+    panel.edits.setCurrentRow(1)
+    panel.show_status(SELECTED)
+    panel.delete.trigger()
+    asked = []
+
+    def answer(*arguments: object) -> tuple[str, bool]:
+        asked.append(arguments[-1])
+        return "West", True
+
+    monkeypatch.setattr(QInputDialog, "getText", answer)
+    panel.rename.trigger()
+    panel.edits.itemDoubleClicked.emit(panel.edits.item(0))
+
+    assert asked == ["North"]
+    assert record.commands == [SelectEdit("b"), DeleteEdit(), RenameEdit("West", "a"), FlyTo(0.0, 0.0)]
 
 
-def test_a_line_can_be_finished_from_two_points_on(panel: EditPanel, record: Recorder) -> None:
-    panel.show_status(ViewStatus(has_terrain=True, is_drawing=True, drawn_vertices=1))
-    assert not panel.finish.isEnabled()
-    panel.show_status(ViewStatus(has_terrain=True, is_drawing=True, drawn_vertices=2))
-    panel.finish.click()
+def test_files_are_asked_for_and_a_dialog_that_is_closed_does_nothing(
+    panel: EditPanel, record: Recorder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for path in ("/tmp/edits.geojson", ""):
+        monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_a, path=path: (path, ""))
+        monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_a, path=path: (path, ""))
+        panel.save.trigger()
+        panel.load.trigger()
+    assert record.commands == [SaveEdits("/tmp/edits.geojson"), LoadEdits("/tmp/edits.geojson")]
 
+
+@pytest.mark.parametrize(("tool", "needed"), [("line", 2), ("area", 3)])
+def test_what_is_drawn_can_be_finished_once_it_has_its_points(
+    panel: EditPanel, record: Recorder, tool: str, needed: int
+) -> None:
+    for count in (needed - 1, needed):
+        panel.show_status(ViewStatus(has_terrain=True, is_drawing=True, edit_tool=tool, drawn_vertices=count))
+        assert panel.finish.isEnabled() == (count == needed)
+    panel.finish.trigger()
     assert record.commands == [FinishEdit()]
 
 
 def test_what_is_not_possible_is_greyed(panel: EditPanel) -> None:
     panel.show_status(ViewStatus(has_terrain=True, is_recalculating=True))
 
-    assert not panel.undo.isEnabled()
-    assert not panel.redo.isEnabled()
+    for action in (panel.undo, panel.redo, panel.rename, panel.delete, panel.save, panel.finish):
+        assert not action.isEnabled()
     assert not panel.recalculate_button.isEnabled()
     assert panel.recalculate_button.text() == "Recalculating ..."
 
 
-def test_the_latency_of_the_last_recalculation_is_told(panel: EditPanel) -> None:
+def test_the_note_says_what_to_do_and_what_a_recalculation_took(panel: EditPanel) -> None:
     panel.show_status(ViewStatus(has_terrain=True, recalculate_latency_s=0.42))
-
     assert "0.42 s" in panel.note.text()
+    notes = set()
+    for tool in ("line", "area", "select", "level"):
+        panel.show_status(ViewStatus(has_terrain=True, edit_tool=tool, drawn_vertices=4))
+        notes.add(panel.note.text())
+    assert len(notes) == 3
+    assert all(notes)
+
+
+def test_every_button_has_a_name_and_a_tip_and_the_menu_has_all_actions(panel: EditPanel) -> None:
+    buttons = panel.findChildren(QToolButton)
+    assert {button.accessibleName() for button in buttons} >= {"Line", "Area", "Select", "Undo", "Delete"}
+    assert all(button.toolTip() for button in buttons)
+    actions = {action for action in panel.menu_actions() if action is not None}
+    assert {button.defaultAction() for button in buttons} | {panel.recalculate} == actions

@@ -52,7 +52,7 @@ def test_a_levee_drawn_by_mouse_is_recalculated_and_changes_the_picture(opened: 
     app, window = opened.app, opened.window
     app.dispatch(Seek(10 * INTERVAL))
     opened.until(lambda: app.is_settled)
-    opened.bot.mouseClick(window.edit_panel.draw, Qt.MouseButton.LeftButton)
+    window.edit_panel.line.trigger()
     opened.until(lambda: opened.status.is_drawing)
     opened.click(1400.0, 2250.0)
     opened.until(lambda: opened.status.drawn_vertices == 1)
@@ -90,14 +90,14 @@ def test_a_levee_drawn_by_mouse_is_recalculated_and_changes_the_picture(opened: 
 
 
 def test_ctrl_z_and_ctrl_y_undo_and_redo(opened: OpenWindow) -> None:
-    opened.bot.mouseClick(opened.window.edit_panel.draw, Qt.MouseButton.LeftButton)
+    opened.window.edit_panel.line.trigger()
     opened.until(lambda: opened.status.is_drawing)
     opened.click(1400.0, 2250.0)
     opened.bot.wait(50)
     opened.click(1500.0, 2480.0)
     opened.until(lambda: opened.status.drawn_vertices == 2)
     opened.until(lambda: opened.window.edit_panel.finish.isEnabled())
-    opened.bot.mouseClick(opened.window.edit_panel.finish, Qt.MouseButton.LeftButton)
+    opened.window.edit_panel.finish.trigger()
     opened.until(lambda: len(opened.status.edits) == 1)
     opened.until(lambda: opened.window.edit_panel.undo.isEnabled())
     opened.bot.keyClick(opened.window.scene, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)

@@ -1,4 +1,12 @@
-from viewer.commands import AddVertex, CancelEdit, FinishEdit, MoveHover
+from viewer.commands import (
+    AddVertex,
+    CancelEdit,
+    DropVertex,
+    EndStroke,
+    FinishEdit,
+    MoveHover,
+    StrokeTo,
+)
 from viewer.tools import EditTool, PointerEvent
 
 
@@ -39,10 +47,34 @@ def test_enter_finishes_and_escape_drops() -> None:
     assert tool.handle_key("w") == []
 
 
-def test_right_drags_and_the_wheel_stay_with_the_camera() -> None:
+def test_a_drag_draws_free_hand_and_a_shaky_click_does_not() -> None:
     tool = EditTool()
+    events = [
+        PointerEvent("press", 0.5, 0.5, "left", ground=(1.0, 2.0)),
+        PointerEvent("move", 0.502, 0.501, "left", ground=(1.1, 2.0)),
+        PointerEvent("release", 0.502, 0.501, "left", ground=(1.1, 2.0)),
+        PointerEvent("press", 0.5, 0.5, "left", ground=(1.0, 2.0)),
+        PointerEvent("move", 0.55, 0.5, "left", ground=(5.0, 2.0)),
+        PointerEvent("move", 0.60, 0.0, "left"),
+        PointerEvent("release", 0.62, 0.5, "left", ground=(9.0, 2.0)),
+        PointerEvent("release", 0.62, 0.5, "left", ground=(9.0, 2.0)),
+    ]
+    commands = [command for event in events for command in tool.handle(event)]
+    assert commands == [
+        AddVertex(1.0, 2.0),
+        AddVertex(1.0, 2.0),
+        StrokeTo(5.0, 2.0),
+        StrokeTo(9.0, 2.0),
+        EndStroke(),
+    ]
 
-    assert tool.wants(PointerEvent("press", 0.5, 0.5, "left"))
-    assert tool.wants(PointerEvent("move", 0.5, 0.5))
-    assert not tool.wants(PointerEvent("move", 0.5, 0.5, "right"))
-    assert not tool.wants(PointerEvent("wheel", 0.5, 0.5, steps=1.0))
+
+def test_a_stroke_that_ends_in_the_sky_ends_where_it_left_the_ground() -> None:
+    tool = EditTool()
+    tool.handle(PointerEvent("press", 0.5, 0.5, "left", ground=(1.0, 2.0)))
+    tool.handle(PointerEvent("move", 0.55, 0.5, "left", ground=(5.0, 2.0)))
+    assert tool.handle(PointerEvent("release", 0.6, 0.0, "left")) == [EndStroke()]
+
+
+def test_backspace_takes_the_last_point_off() -> None:
+    assert EditTool().handle_key("backspace") == [DropVertex()]
