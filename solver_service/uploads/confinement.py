@@ -1,7 +1,7 @@
 """Confining a process before it opens a file that may be hostile.
 
 Resource limits bound memory, processor time, files and their sizes. A seccomp filter, which no later code of
-the process can lift, refuses sockets, new programs, signals to others and tracing: what a file reader that
+the process can lift, refuses sockets, new processes, signals to others and tracing: what a file reader that
 was taken over would need (seccomp(2), BPF instructions in linux/filter.h). GDAL is left with the few drivers
 that are asked for by name.
 """
@@ -14,6 +14,8 @@ import platform
 import struct
 import sys
 from collections.abc import Mapping
+from dataclasses import dataclass
+from errno import ENOSYS, EPERM
 
 from solver_service.errors import CaseError
 from solver_service.uploads.import_messages import ImportLimits
@@ -23,20 +25,44 @@ OPEN_FILES = 128
 
 _PR_SET_PDEATHSIG, _PR_SET_NO_NEW_PRIVS, _PR_SET_SECCOMP = 1, 38, 22
 _SECCOMP_MODE_FILTER, _SIGKILL = 2, 9
-_ALLOW, _REFUSE = 0x7FFF0000, 0x00050000 | 1  # SECCOMP_RET_ERRNO with EPERM
-_LOAD, _JUMP_IF_EQUAL, _JUMP_IF_AT_LEAST, _RETURN = 0x20, 0x15, 0x35, 0x06
+_ALLOW, _ERROR = 0x7FFF0000, 0x00050000
+_LOAD, _JUMP_IF_EQUAL, _JUMP_IF_AT_LEAST, _JUMP_IF_ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+_MACHINE_AT, _NUMBER_AT, _FIRST_ARGUMENT_AT = 4, 0, 16  # in the seccomp_data that a filter sees
 _X32_CALLS = 0x40000000
 """System calls from here on are those of another interface of x86-64."""
+_CLONE_THREAD = 0x10000
 
-REFUSED_CALLS: dict[str, tuple[int, dict[str, int]]] = {
-    "x86_64": (
+
+@dataclass(frozen=True)
+class CallTable:
+    """The numbers of a machine.
+
+    Attributes:
+        machine: its number in the kernel's audit interface.
+        clone: the call that makes a thread, which is allowed, or a process, which is not.
+        clone3: the same with arguments that a filter cannot see; the C library goes back to `clone`.
+        refused: calls that are refused, by name.
+    """
+
+    machine: int
+    clone: int
+    clone3: int
+    refused: dict[str, int]
+
+
+CALLS = {
+    "x86_64": CallTable(
         0xC000003E,
+        56,
+        435,
         {
             "socket": 41,
             "connect": 42,
             "bind": 49,
             "listen": 50,
             "socketpair": 53,
+            "fork": 57,
+            "vfork": 58,
             "execve": 59,
             "kill": 62,
             "ptrace": 101,
@@ -54,8 +80,10 @@ REFUSED_CALLS: dict[str, tuple[int, dict[str, int]]] = {
             "pidfd_getfd": 438,
         },
     ),
-    "aarch64": (
+    "aarch64": CallTable(
         0xC00000B7,
+        220,
+        435,
         {
             "mount": 40,
             "unshare": 97,
@@ -80,7 +108,6 @@ REFUSED_CALLS: dict[str, tuple[int, dict[str, int]]] = {
         },
     ),
 }
-"""By machine: its number in the kernel's audit interface, and the calls that are refused."""
 
 GDAL = {
     "GDAL_SKIP": "VRT,MRF,netCDF,HDF4,HDF5,HDF5Image,WMS,WMTS,WCS,HTTP,PLMOSAIC,STACIT,STACTA,GTI,DERIVED,"
@@ -118,10 +145,10 @@ def confine(limits: ImportLimits, parent: int) -> None:
     Raises:
         CaseError: this system cannot confine a process.
     """
-    calls = REFUSED_CALLS.get(platform.machine())
+    calls = CALLS.get(platform.machine())
     if sys.platform != "linux" or calls is None:
         raise CaseError(
-            f"cases can be imported on Linux on {' and '.join(REFUSED_CALLS)} only; this is {sys.platform} on"
+            f"cases can be imported on Linux on {' and '.join(CALLS)} only; this is {sys.platform} on"
             f" {platform.machine()}"
         )
     import resource
@@ -143,32 +170,40 @@ def confine(limits: ImportLimits, parent: int) -> None:
     if os.getppid() != parent:
         sys.exit("the service that asked for this import is gone")
     _prctl(_PR_SET_NO_NEW_PRIVS, 1)
-    _filter_calls(*calls)
+    _filter_calls(calls)
 
 
-def filter_program(machine: int, calls: Mapping[str, int]) -> bytes:
-    """The instructions of a filter that refuses system calls with EPERM.
+def filter_program(calls: CallTable) -> bytes:
+    """The instructions of a filter that refuses calls by EPERM, or by ENOSYS where another call does as well.
 
     Args:
-        machine: number of the machine in the audit interface; calls for another one are refused.
-        calls: numbers of the refused calls.
+        calls: the numbers of this machine; calls for another one are refused.
     """
-    numbers = sorted(calls.values())
-    count = len(numbers)
-    lines = [
-        (_LOAD, 0, 0, 4),  # the machine
-        (_JUMP_IF_EQUAL, 0, count + 3, machine),
-        (_LOAD, 0, 0, 0),  # the number of the call
-        (_JUMP_IF_AT_LEAST, count + 1, 0, _X32_CALLS),
-        *((_JUMP_IF_EQUAL, count - place, 0, number) for place, number in enumerate(numbers)),
-        (_RETURN, 0, 0, _ALLOW),
-        (_RETURN, 0, 0, _REFUSE),
-    ]
+    refused = sorted(calls.refused.values())
+    allow, refuse, absent = (len(refused) + 8 + verdict for verdict in range(3))
+    lines: list[tuple[int, int, int, int]] = []
+
+    def jump(code: int, constant: int, yes: int | None = None, no: int | None = None) -> None:
+        """Go to a line, or on to the next."""
+        here = len(lines) + 1
+        lines.append((code, (yes or here) - here, (no or here) - here, constant))
+
+    lines.append((_LOAD, 0, 0, _MACHINE_AT))
+    jump(_JUMP_IF_EQUAL, calls.machine, no=refuse)
+    lines.append((_LOAD, 0, 0, _NUMBER_AT))
+    jump(_JUMP_IF_AT_LEAST, _X32_CALLS, yes=refuse)
+    for number in refused:
+        jump(_JUMP_IF_EQUAL, number, yes=refuse)
+    jump(_JUMP_IF_EQUAL, calls.clone3, yes=absent)
+    jump(_JUMP_IF_EQUAL, calls.clone, no=allow)
+    lines.append((_LOAD, 0, 0, _FIRST_ARGUMENT_AT))
+    jump(_JUMP_IF_ANY_BIT, _CLONE_THREAD, no=refuse)
+    lines += [(_RETURN, 0, 0, verdict) for verdict in (_ALLOW, _ERROR | EPERM, _ERROR | ENOSYS)]
     return b"".join(struct.pack("<HBBI", *line) for line in lines)
 
 
-def _filter_calls(machine: int, calls: Mapping[str, int]) -> None:
-    program = filter_program(machine, calls)
+def _filter_calls(calls: CallTable) -> None:
+    program = filter_program(calls)
     held = ctypes.create_string_buffer(program, len(program))
     head = ctypes.create_string_buffer(
         struct.pack("@HP", len(program) // 8, ctypes.addressof(held)), struct.calcsize("@HP")

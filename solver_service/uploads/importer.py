@@ -78,8 +78,9 @@ async def import_case(folder: Path, limits: ImportLimits, on_stage: Callable[[St
     finally:
         if process.returncode is None:
             process.kill()
+        await process.stdout.read()  # what it said after that; it has no children that could go on
         await process.wait()
-        words.cancel()
+        await words
     if isinstance(verdict, Refused):
         raise CaseError(verdict.sentence)
     return verdict

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from solver_service.uploads.confinement import REFUSED_CALLS, confined_environment, filter_program
+from solver_service.uploads.confinement import CALLS, confined_environment, filter_program
 from solver_service.uploads.import_messages import ImportLimits
 from tests.solver_service.uploads.confined import HEAD, run_confined
 
 pytestmark = pytest.mark.skipif(
-    sys.platform != "linux" or os.uname().machine not in REFUSED_CALLS,
+    sys.platform != "linux" or os.uname().machine not in CALLS,
     reason="processes are confined on Linux on x86-64 and aarch64",
 )
 
@@ -25,19 +25,21 @@ attempt("file", lambda: open("/proc/self/status").read())
 attempt("socket", lambda: socket.socket())
 attempt("pair", lambda: socket.socketpair())
 attempt("program", lambda: os.execv("/bin/true", ["true"]))
+attempt("fork", os.fork)
+import threading
+threading.Thread(target=lambda: print("thread done", flush=True)).start()
 attempt("child", lambda: subprocess.run(["/bin/true"]))
 attempt("signal", lambda: os.kill(os.getppid(), 0))
 """
 
 
-def test_sockets_programs_and_signals_are_refused_and_files_are_not() -> None:
+def test_sockets_processes_and_signals_are_refused_and_files_and_threads_are_not() -> None:
     answer = run_confined(ATTEMPTS)
 
     told = dict(line.split() for line in answer.stdout.splitlines())
-    assert told["file"] == "done"
-    assert {name: told[name] for name in ("socket", "pair", "program", "child", "signal")} == dict.fromkeys(
-        ("socket", "pair", "program", "child", "signal"), "PermissionError"
-    ), answer.stderr
+    assert told.pop("file") == told.pop("thread") == "done"
+    names = ("socket", "pair", "program", "fork", "child", "signal")
+    assert told == dict.fromkeys(names, "PermissionError"), answer.stderr
 
 
 def test_a_process_that_is_not_confined_may_do_what_is_refused() -> None:
@@ -119,22 +121,28 @@ def test_few_variables_reach_the_process_and_gdal_has_lost_the_drivers_that_read
 def test_every_jump_of_the_filter_lands_on_its_verdict() -> None:
     import struct
 
-    for machine, calls in REFUSED_CALLS.values():
-        lines = list(struct.iter_unpack("<HBBI", filter_program(machine, calls)))
+    for calls in CALLS.values():
+        lines = list(struct.iter_unpack("<HBBI", filter_program(calls)))
 
-        def verdict(number: int, on: int, lines: list[tuple[int, ...]] = lines) -> int:
+        def verdict(number: int, on: int, flags: int = 0, lines: list[tuple[int, ...]] = lines) -> int:
             at, value = 0, 0
             while True:
                 code, yes, no, constant = lines[at]
                 if code == 0x06:
                     return constant
+                at += 1
                 if code == 0x20:
-                    value = {0: number, 4: on}[constant]
-                    at += 1
+                    value = {0: number, 4: on, 16: flags}[constant]
                     continue
-                holds = value == constant if code == 0x15 else value >= constant
-                at += 1 + (yes if holds else no)
+                holds = {0x15: value == constant, 0x35: value >= constant, 0x45: bool(value & constant)}[code]
+                at += yes if holds else no
 
-        refused = {number for number in range(600) if verdict(number, machine) != 0x7FFF0000}
-        assert refused == set(calls.values())
-        assert verdict(1, machine ^ 1) == verdict(0x40000001, machine) == 0x00050001
+        allowed, refused, absent = 0x7FFF0000, 0x00050000 | 1, 0x00050000 | 38
+        found = {number: verdict(number, calls.machine) for number in range(600)}
+        assert {number for number, each in found.items() if each == refused} == {
+            *calls.refused.values(),
+            calls.clone,
+        }
+        assert [number for number, each in found.items() if each == absent] == [calls.clone3]
+        assert verdict(calls.clone, calls.machine, 0x10000 | 0x100) == allowed
+        assert verdict(1, calls.machine ^ 1) == verdict(0x40000001, calls.machine) == refused
