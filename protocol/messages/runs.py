@@ -253,11 +253,12 @@ class RunInfo(WireStruct, frozen=True):
         label: the name that people gave it.
         pinned: whether it is kept whatever the budget of the store.
         forcing_revision: revision of its working forcing.
+        moves: what its status allows now, of "pause", "resume", "stop", "delete", "pin", "unpin".
         channels: what it keeps beside the depth, for `get_channel`.
         layers: pictures of its terrain, for `get_imagery`.
     """
 
-    left_out: ClassVar[tuple[str, ...]] = ("forcing_revision", "channels", "layers")
+    left_out: ClassVar[tuple[str, ...]] = ("forcing_revision", "channels", "layers", "moves")
 
     run: Identifier
     case: Name
@@ -281,6 +282,7 @@ class RunInfo(WireStruct, frozen=True):
     label: Name = ""
     pinned: bool = False
     forcing_revision: Revision = 0
+    moves: Annotated[tuple[Name, ...], Meta(max_length=64)] = ()
     channels: Channels = ()
     layers: Layers = ()
 

@@ -94,3 +94,18 @@ def check_move(run: str, status: RunStatus, move: Move) -> RunStatus:
         allowed = ", ".join(each.value for each in RunStatus if each in rule.sources)
         raise RunError(f"run {run} is {status.value} and cannot be {rule.verb}; it can while it is {allowed}")
     return status if rule.target is None else rule.target
+
+
+STEERED = (Move.PAUSE, Move.RESUME, Move.STOP, Move.DELETE, Move.PIN, Move.UNPIN)
+"""Moves that people make by buttons."""
+
+
+def moves_of(status: RunStatus, pinned: bool) -> tuple[str, ...]:
+    """The moves that a person may make now, by the table; pinned runs are not deleted.
+
+    Args:
+        status: of the run.
+        pinned: whether it is pinned.
+    """
+    barred = {Move.PIN, Move.DELETE} if pinned else {Move.UNPIN}
+    return tuple(move.value for move in STEERED if status in RULES[move].sources and move not in barred)

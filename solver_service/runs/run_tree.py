@@ -14,7 +14,7 @@ from solver_service.runs.case_facts import CaseFacts
 from solver_service.runs.edit_change import EditChange
 from solver_service.runs.forced_course import WorkingForcing
 from solver_service.runs.lineage import Leg, branch_point, lineage, owner
-from solver_service.runs.run_status import RunStatus
+from solver_service.runs.run_status import RunStatus, moves_of
 from solver_service.runs.worker import Worker
 from solver_service.store import EditEvent, FrameRecord, RunRecord
 
@@ -166,6 +166,7 @@ class RunTree:
             label=record.label,
             pinned=record.pinned,
             forcing_revision=run.forcing.revision,
+            moves=moves_of(run.status, record.pinned),
         )
 
     def _leg(self, name: str) -> tuple[Leg, str | None]:

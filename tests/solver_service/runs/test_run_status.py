@@ -3,7 +3,7 @@ import itertools
 import pytest
 
 from solver_service.errors import RunError
-from solver_service.runs.run_status import ACTIVE, RULES, Move, RunStatus, check_move
+from solver_service.runs.run_status import ACTIVE, RULES, Move, RunStatus, check_move, moves_of
 
 
 def test_every_move_has_its_rule_in_the_table() -> None:
@@ -30,3 +30,10 @@ def test_a_run_that_computes_can_always_be_paused_stopped_or_fail_but_not_delete
         legal = {move for move in Move if status in RULES[move].sources}
         assert {Move.PAUSE, Move.STOP, Move.FAIL, Move.RESTART} <= legal
         assert Move.DELETE not in legal
+
+
+def test_people_are_told_what_the_table_allows_now() -> None:
+    assert moves_of(RunStatus.RUNNING, False) == ("pause", "stop", "pin")
+    assert moves_of(RunStatus.PAUSED, False) == ("resume", "stop", "delete", "pin")
+    assert moves_of(RunStatus.FAILED, True) == ("resume", "stop", "unpin")
+    assert moves_of(RunStatus.FINISHED, False) == ("delete", "pin")
