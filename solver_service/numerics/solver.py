@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-import warp as wp
 
 from solver_service.errors import ModelError
 from solver_service.numerics.active_tiles import ActiveTiles
@@ -29,13 +28,13 @@ from solver_service.numerics.kernel_engine import KernelEngine
 from solver_service.numerics.maxima import Maxima, begin_maxima, end_wet_spells, read_maxima
 from solver_service.numerics.model import FloodModel
 from solver_service.numerics.params import SolverParams
+from solver_service.numerics.read_out import read_maximum_fields, read_quantised, read_velocity
 from solver_service.numerics.row_engine import RowEngine, rows_compile
 from solver_service.numerics.section import SectionProfile, SectionSeries, SectionTotals
 from solver_service.numerics.section_recorder import SectionRecorder
 from solver_service.numerics.snapshot import Snapshot
 from solver_service.numerics.state_keeping import check_snapshot, put_back, take_snapshot, with_new_rain
 from solver_service.numerics.weirs import Weirs
-from solver_service.numerics.wet_block_kernels import BLOCK_STRIDE, classify_blocks, quantise_depth
 
 WALL_HEIGHT = 1000.0
 """How far blocked cells stand above the highest bed [m]."""
@@ -324,19 +323,19 @@ class ShallowWaterSolver:
         Returns:
             q [nrows, ncols] and states [block_rows, block_cols].
         """
-        nrows, ncols = self.model.shape
-        blocks = tuple(max(1, -(-(n - 1) // BLOCK_STRIDE)) for n in (nrows, ncols))
-        q = wp.empty((nrows, ncols), dtype=wp.uint16, device=self.device)
-        states = wp.empty(blocks, dtype=wp.uint8, device=self.device)
-        wp.launch(
-            quantise_depth,
-            dim=(nrows, ncols),
-            inputs=[self._store.current("h"), scale, depth_wet],
-            outputs=[q],
-            device=self.device,
-        )
-        wp.launch(classify_blocks, dim=blocks, inputs=[q], outputs=[states], device=self.device)
-        return q.numpy().copy(), states.numpy().copy()
+        return read_quantised(self._store, scale, depth_wet)
+
+    def velocity_fields(self, depth_wet: float) -> npt.NDArray[np.float32]:
+        """Velocity to the east and north [m/s], host copy [2, nrows, ncols]; 0 below `depth_wet` [m]."""
+        return read_velocity(self._store, depth_wet)
+
+    def maximum_fields(self, depth_wet: float) -> npt.NDArray[np.float32]:
+        """Largest depth [m], speed [m/s] and hazard, first arrival [s, inf where never], [4, nrows, ncols].
+
+        Args:
+            depth_wet: cells never deeper than this [m], and without arrival, are 0.
+        """
+        return read_maximum_fields(self._store, depth_wet)
 
     # --- change and keep ---------------------------------------------------------------------------
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from protocol import ForcingItem, GridInfo
+from protocol import ForcingItem, GridInfo, Layer
 
 
 class CaseFacts(msgspec.Struct, frozen=True):
@@ -18,6 +18,7 @@ class CaseFacts(msgspec.Struct, frozen=True):
         licence: licence of the data.
         start_time: clock time of frame 0, ISO 8601 with offset.
         forcing: what drives it from outside.
+        layers: pictures of its terrain.
     """
 
     grid: GridInfo
@@ -27,6 +28,7 @@ class CaseFacts(msgspec.Struct, frozen=True):
     licence: str = ""
     start_time: str | None = None
     forcing: tuple[ForcingItem, ...] = ()
+    layers: tuple[Layer, ...] = ()
 
     def pack(self) -> bytes:
         """The stored form."""

@@ -10,10 +10,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from protocol import GridInfo, apply_edits
+from protocol import CHANNEL_FIELDS, ChannelName, GridInfo, apply_edits
 from solver_service.numerics import ShallowWaterSolver, Snapshot, pick_device
 from solver_service.runs.case_facts import CaseFacts
 from solver_service.runs.edit_blobs import unpack_edits
+from solver_service.runs.ground_layers import layers_of
 from solver_service.runs.lineage import Leg
 from solver_service.scenario import Case, load_case
 from solver_service.scenario.forced_model import ForcedFrom, forced_model, stretches
@@ -57,6 +58,7 @@ class Computation:
             licence=self.case.licence,
             start_time=self.case.start_time,
             forcing=forcing_items(self.case),
+            layers=layers_of(self.case),
         )
 
     @property
@@ -137,6 +139,11 @@ class Computation:
     def depth_max(self) -> float:
         """Greatest depth of this moment [m]."""
         return float(self.solver.depth().max(initial=0.0))
+
+    def channel(self, name: ChannelName) -> dict[str, NDArray[np.float32]]:
+        """The fields of a channel at this moment, as rasters of their own."""
+        read = self.solver.velocity_fields if name == "velocity" else self.solver.maximum_fields
+        return dict(zip(CHANNEL_FIELDS[name], read(self.depth_wet), strict=True))
 
     def quantise(self, scale: float) -> tuple[NDArray[np.uint16], NDArray[np.uint8]]:
         """Quantised depth and block states of this moment, as arrays of their own."""

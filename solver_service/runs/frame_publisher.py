@@ -1,6 +1,7 @@
 """From the solver to the store: encode, append, commit and tell, on a thread of its own.
 
-The solver hands over (q, states) and goes on; it waits only when the disk is so slow that the queue is full.
+The solver hands over the rasters of a frame and goes on; it waits only when the disk is so slow that the
+queue is full.
 When the store fails (a full disk) nothing is lost: the frame stays in hand, the run is told to pause, and
 `retry` tries again. A run that is taken up leans on the key frame that is open in its store, so that its
 bytes are those of a run that nothing disturbed.
@@ -12,13 +13,21 @@ import logging
 import queue
 import threading
 import time as clock
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from protocol import BlockLayout, Frame, FrameEncoder, ProtocolError, peek_frame
+from protocol import (
+    BlockLayout,
+    ChannelName,
+    Frame,
+    FrameEncoder,
+    ProtocolError,
+    encode_channel,
+    peek_frame,
+)
 from solver_service.errors import StoreError
 from solver_service.runs.frame_grouping import open_key_frame
 from solver_service.runs.worker_messages import FrameStored
@@ -43,6 +52,7 @@ class QuantisedFrame:
         states: block states, uint8 [block_rows, block_cols].
         scale: depth of one unit [m].
         bed: cells that breaches have lowered, as row x ncols + col, rising, and their bed [m].
+        channels: the channels that go with it, each with its fields by name, float32 [nrows, ncols].
     """
 
     run: str
@@ -53,6 +63,13 @@ class QuantisedFrame:
     states: NDArray[np.uint8]
     scale: float
     bed: tuple[NDArray[np.int64], NDArray[np.float32]] | None = None
+    channels: Mapping[ChannelName, Mapping[str, NDArray[np.float32]]] = field(default_factory=dict)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of its rasters."""
+        rasters = (raster for fields in self.channels.values() for raster in fields.values())
+        return self.q.nbytes + sum(raster.nbytes for raster in rasters)
 
 
 class FramePublisher:
@@ -102,7 +119,7 @@ class FramePublisher:
         if not self._has_space:  # no lock is asked for otherwise: whoever holds it may not get a processor
             with self._space:
                 self._space.wait_for(lambda: self._has_space or self._in_trouble)
-        self._handed_bytes += frame.q.nbytes
+        self._handed_bytes += frame.nbytes
         self._handed += 1
         waited = clock.perf_counter() - begun
         self._queue.put((frame, begun, waited))
@@ -143,7 +160,7 @@ class FramePublisher:
                 continue
             self._store(*job, database)
             with self._space:
-                self._stored_bytes += job[0].q.nbytes
+                self._stored_bytes += job[0].nbytes
                 self._stored += 1
                 self._space.notify_all()
         if self._writer is not None:
@@ -157,6 +174,7 @@ class FramePublisher:
             frame.run, frame.index, frame.time, frame.revision, water, scale=frame.scale, bed=frame.bed
         )
         key_index = peek_frame(packed).key_index
+        channels = pack_channels(frame, encoder.layout)
         while True:
             try:
                 record = writer.append(
@@ -165,6 +183,7 @@ class FramePublisher:
                     revision=frame.revision,
                     key_index=key_index,
                     frame=packed,
+                    channels=channels,
                 )
             except StoreError as error:
                 self._retry.clear()
@@ -205,3 +224,14 @@ class FramePublisher:
         except (StoreError, ProtocolError) as error:
             LOG.warning("run %s goes on with a new key frame: %s", run, error)
             return None
+
+
+def pack_channels(frame: QuantisedFrame, layout: BlockLayout) -> dict[str, bytes]:
+    """The packed channels of a frame, by name."""
+    packed: dict[str, bytes] = {}
+    for name, fields in frame.channels.items():
+        states = frame.states
+        if name == "maxima":  # all that was ever wet
+            states = layout.classify((fields["max_depth"] > 0.0).astype(np.uint16))
+        packed[name] = encode_channel(layout, frame.run, frame.index, frame.time, name, fields, states)
+    return packed

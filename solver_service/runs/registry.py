@@ -12,11 +12,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from protocol import CaseSummary, RunInfo
+from protocol import CHANNEL_NAMES, CaseSummary, Layer, RunInfo
 from solver_service.errors import StoreError
 from solver_service.runs.audience import Audience
 from solver_service.runs.branching import Branching
 from solver_service.runs.case_catalogue import CaseCatalogue
+from solver_service.runs.channel_desk import ChannelDesk
+from solver_service.runs.channels import kept_channels
 from solver_service.runs.controllers import Controllers
 from solver_service.runs.edit_desk import EditDesk
 from solver_service.runs.forcing_desk import ForcingDesk
@@ -39,6 +41,7 @@ from solver_service.store import (
     RunDatabase,
     StoredBytes,
     load_bed,
+    load_layer,
 )
 
 INTERRUPTED = "the service ended while it was computed; resume goes on from the last checkpoint"
@@ -60,6 +63,7 @@ class RunRegistry:
         supervisor: their workers.
         control: starts, pauses, ends and marks them.
         branching: makes their children.
+        channels: reads what they keep beside the depth.
     """
 
     def __init__(
@@ -77,6 +81,7 @@ class RunRegistry:
         log_format: str = "text",
         log_level: str = "warning",
         patience: Patience | None = None,
+        channels: tuple[str, ...] = CHANNEL_NAMES,
     ) -> None:
         """Open the store; `open` then begins the work.
 
@@ -94,6 +99,7 @@ class RunRegistry:
             log_format: "text" or "json", for the lines of the workers.
             log_level: least level of these lines.
             patience: how long a worker may show nothing before it is taken to hang.
+            channels: what runs may keep beside the depth.
 
         Raises:
             StoreError: the folder is in use or cannot be used.
@@ -133,7 +139,9 @@ class RunRegistry:
             self.reports,
             self.audience,
             device,
+            kept_channels(channels),
         )
+        self.channels = ChannelDesk(self.tree, self._store, self._reader)
         self.branching = Branching(
             self.tree, self._store, self._catalogue, self.supervisor, self.reports, self.audience
         )
@@ -231,3 +239,8 @@ class RunRegistry:
     async def read_bed(self, name: str) -> bytes:
         """The packed base bed of a run."""
         return await asyncio.to_thread(load_bed, self._folder, self.tree.get(name).record.case_fingerprint)
+
+    async def read_layer(self, name: str, layer: Layer) -> bytes:
+        """The file of a picture of the terrain of a run."""
+        fingerprint = self.tree.get(name).record.case_fingerprint
+        return await asyncio.to_thread(load_layer, self._folder, fingerprint, layer)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from dataclasses import replace
 
-from protocol import RunChanged, RunRemoved, check_forcing
+from protocol import ChannelName, RunChanged, RunRemoved, check_forcing
 from solver_service.errors import RunError
 from solver_service.runs.audience import Audience
 from solver_service.runs.case_catalogue import CaseCatalogue
@@ -35,8 +35,12 @@ class RunControl:
         reports: RunReports,
         audience: Audience,
         device: str,
+        channels: tuple[ChannelName, ...],
     ) -> None:
-        """Control the runs of a tree; `device` is that of runs that ask for "auto"."""
+        """Control the runs of a tree.
+
+        `device` is that of runs that ask for "auto", `channels` what runs may keep beside the depth.
+        """
         self._tree = tree
         self._store = store
         self._folder = folder
@@ -46,6 +50,7 @@ class RunControl:
         self._reports = reports
         self._audience = audience
         self._device = device
+        self._channels = channels
 
     async def start(
         self,
@@ -56,6 +61,7 @@ class RunControl:
         paused: bool = False,
         owner: str = "",
         forcing: Changes = (),
+        channels: tuple[ChannelName, ...] | None = None,
     ) -> Run:
         """Start a run of a case from time 0.
 
@@ -67,6 +73,7 @@ class RunControl:
             paused: stop after the first frame.
             owner: id of the token that is charged for it.
             forcing: how its forcing differs from the case.
+            channels: what to keep beside the depth; None for all that runs may keep.
 
         Raises:
             ForcingError: a change of forcing does not fit the case.
@@ -99,6 +106,9 @@ class RunControl:
                     facts=loaded.facts.pack(),
                     owner=owner,
                     forcing=pack_changes(forcing),
+                    channels=",".join(
+                        name for name in self._channels if channels is None or name in channels
+                    ),
                 )
                 await self._store.call(RunDatabase.insert_run, record, (), working.event(name))
             except BaseException:

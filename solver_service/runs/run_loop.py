@@ -17,11 +17,13 @@ from dataclasses import replace
 from protocol import ProtocolError
 from solver_service.errors import ServiceError, StoreError, StoreFull
 from solver_service.numerics import pick_device
+from solver_service.runs.channels import due_channels
 from solver_service.runs.computation import Computation
 from solver_service.runs.course import Course, next_index_after
 from solver_service.runs.forced_course import course_of
 from solver_service.runs.frame_grouping import FrameGrouping, grouping_after, open_key_frame
 from solver_service.runs.frame_publisher import FramePublisher, QuantisedFrame
+from solver_service.runs.ground_layers import keep_layers
 from solver_service.runs.inbox import Inbox
 from solver_service.runs.state_keeper import StateKeeper
 from solver_service.runs.worker_failure import failure_of
@@ -121,6 +123,7 @@ class RunLoop:
         try:
             computation = self._load(command.case, command.device)
             save_bed(self._folder, computation.fingerprint, computation.case.z_b)
+            keep_layers(self._folder, computation.fingerprint, computation.case)
         except ServiceError as error:
             self._report(CaseRefused(command.case, str(error)))
             return
@@ -247,7 +250,9 @@ class RunLoop:
         leg = course.begin.legs[-1]
         solver = computation.solver
         bed = solver.breached_bed()
-        frame = QuantisedFrame(leg.run, index, solver.time, leg.revision, q, states, scale, bed)
+        due = due_channels(course.begin.channels, index, leg.first_index, course.begin.last_index)
+        channels = {name: computation.channel(name) for name in due}
+        frame = QuantisedFrame(leg.run, index, solver.time, leg.revision, q, states, scale, bed, channels)
         self._publisher.publish(frame)
 
     def _keep(self, course: Course, computation: Computation) -> None:

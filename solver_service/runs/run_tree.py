@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from protocol import EditLog, LineageEntry, RunInfo
 from solver_service.errors import RunError
 from solver_service.runs.case_facts import CaseFacts
+from solver_service.runs.channels import kept_channels
 from solver_service.runs.edit_change import EditChange
 from solver_service.runs.forced_course import WorkingForcing
 from solver_service.runs.lineage import Leg, branch_point, lineage, owner
@@ -165,6 +166,8 @@ class RunTree:
             message=run.reason,
             label=record.label,
             pinned=record.pinned,
+            channels=kept_channels(record.channel_names),
+            layers=facts.layers,
             forcing_revision=run.forcing.revision,
             moves=moves_of(run.status, record.pinned),
         )

@@ -12,6 +12,7 @@ import logging
 
 from solver_service.errors import RunError, ServiceError
 from solver_service.runs.case_catalogue import CaseCatalogue
+from solver_service.runs.channels import kept_channels
 from solver_service.runs.forced_course import WorkingForcing
 from solver_service.runs.restart_policy import RestartPolicy
 from solver_service.runs.run_reports import RunReports
@@ -104,6 +105,7 @@ class Supervisor:
                 last_index=run.last_index,
                 paused=paused,
                 number=next(self._numbers),
+                channels=kept_channels(run.record.channel_names),
             )
         )
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from protocol import ChannelName
 from solver_service.runs.case_facts import CaseFacts
 from solver_service.runs.lineage import Leg
 from solver_service.runs.worker_failure import FailureKind
@@ -62,6 +63,7 @@ class Begin:
         last_index: index of the last frame.
         paused: bring the run to its first frame only and wait.
         number: tells this order from others for the same run; comes back with `Left`.
+        channels: what goes with its frames beside the depth.
     """
 
     run: str
@@ -73,6 +75,7 @@ class Begin:
     last_index: int
     paused: bool = False
     number: int = 0
+    channels: tuple[ChannelName, ...] = ()
 
 
 @dataclass(frozen=True)

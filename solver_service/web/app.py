@@ -10,7 +10,7 @@ from fastapi import Depends, FastAPI, HTTPException, Request, Response, WebSocke
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
 
-from protocol import PROTOCOL_VERSION
+from protocol import PROTOCOL_VERSION, ChannelName
 from solver_service.errors import AccessError, ServiceError
 from solver_service.logging_setup import tag_log
 from solver_service.runs import RunRegistry
@@ -39,6 +39,7 @@ class RunRequest(BaseModel):
     output_interval: Annotated[float, Field(gt=0, le=1e9, allow_inf_nan=False)] | None = None
     device: Annotated[str, Field(pattern=r"^(auto|cpu|cuda(:[0-9]{1,3})?)$")] = "auto"
     paused: bool = False
+    channels: Annotated[tuple[ChannelName, ...], Field(max_length=8)] | None = None
 
 
 class RunCreated(BaseModel):
@@ -164,6 +165,7 @@ def create_app(
                 body.device,
                 body.paused,
                 owner_of(access),
+                channels=body.channels,
             )
         return RunCreated(run=run.run)
 

@@ -13,6 +13,8 @@ from protocol import (
     Command,
     DeleteEdit,
     DeleteRun,
+    GetChannel,
+    GetImagery,
     GetTerrain,
     ListCases,
     ListRuns,
@@ -38,16 +40,20 @@ from protocol import (
     UndoEdit,
     UnpinRun,
     Unsubscribe,
+    channel_parts,
     limits,
 )
 from solver_service.errors import RunError
 from solver_service.runs import RunRegistry, Session
 from solver_service.web.auth import Access
 from solver_service.web.frame_feed import FrameFeed
+from solver_service.web.imagery_parts import imagery_parts
 from solver_service.web.outbox import Outbox
 from solver_service.web.quotas import Quotas, owner_of
 
 LISTED = 1000
+LARGE_ANSWERS = 4
+"""Terrains, channels and frames that may be on their way to a client when it asks for another."""
 
 EditCommand = AppendEdit | AppendEdits | ReplaceEdit | DeleteEdit | UndoEdit | RedoEdit
 """Commands that change a working list of edits."""
@@ -119,6 +125,7 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
                     command.paused,
                     owner_of(access),
                     command.forcing,
+                    command.channels,
                 )
             registry.controllers.take(run.run, client.identity, force=True)
             client.tell(Ack(command.id, {"run": run.run}))
@@ -153,8 +160,18 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
         case ReleaseControl():
             _release(command, client)
             client.tell(Ack(command.id))
+        case GetChannel():
+            _refuse_who_does_not_read(client)
+            packed = await registry.channels.read(command.run, command.index, command.channel)
+            client.tell(Ack(command.id))
+            parts = channel_parts(command.id, packed)
+            client.outbox.put_bulk(packet for part in parts for packet in client.session.send(part))
         case GetTerrain():
             await _send_terrain(command, client)
+        case GetImagery():
+            pictures = await imagery_parts(command, registry)
+            client.tell(Ack(command.id))
+            client.outbox.put_bulk(packet for part in pictures for packet in client.session.send(part))
         case Subscribe() | Seek():
             registry.tree.get(command.run)
             client.tell(Ack(command.id))  # a subscription takes effect with its ack
@@ -218,7 +235,18 @@ def _release(command: ReleaseControl, client: Client) -> None:
     registry.controllers.release(command.run, client.identity, heir)
 
 
+def _refuse_who_does_not_read(client: Client) -> None:
+    """Let nobody fill the memory of the service with large answers.
+
+    Raises:
+        RunError: too many are on their way.
+    """
+    if client.outbox.bulk_count >= LARGE_ANSWERS:
+        raise RunError(f"{LARGE_ANSWERS} large answers are on their way; ask again when they have come")
+
+
 async def _send_terrain(command: GetTerrain, client: Client) -> None:
+    _refuse_who_does_not_read(client)
     packed = await client.registry.read_bed(command.run)
     grid = client.registry.tree.get(command.run).facts.grid
     client.tell(Ack(command.id))

@@ -38,6 +38,11 @@ class Outbox:
         """Whether parts of something large wait."""
         return bool(self._bulk)
 
+    @property
+    def bulk_count(self) -> int:
+        """How many large things wait or are on their way."""
+        return len(self._bulk)
+
     def put(self, packets: Iterable[bytes]) -> None:
         """Queue control messages; passing a limit closes the connection."""
         for packet in packets:

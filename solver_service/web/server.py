@@ -67,6 +67,7 @@ def run_service(settings: ServiceSettings) -> None:
             log_format=settings.log_format,
             log_level=settings.log_level,
             patience=Patience(settings.worker_silence_s, settings.worker_stall_s),
+            channels=settings.channels,
             room=RoomRules(settings.store_bytes, settings.reserve_bytes),
         )
         tokens = TokenStore(settings.data_dir)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from protocol import CHANNEL_NAMES
 from protocol.limits import MAX_CELLS
 from solver_service.logging_setup import LEVELS
 from solver_service.web.settings import ServiceSettings
@@ -30,7 +31,7 @@ class SettingKey:
         flag: the option of `fev-solver serve`, or none.
         least: smallest number allowed.
         most: largest number allowed.
-        pattern: what a text must match.
+        pattern: what a text, or each text of a list, must match.
         allowed: the pattern in words.
     """
 
@@ -62,7 +63,7 @@ class SettingKey:
             case "path":
                 return "a path"
             case "texts":
-                return "a list of texts that are not empty (separated by commas in the environment)"
+                return f"a list, each {self.allowed} (separated by commas in the environment)"
             case "integer" | "number":
                 noun = "a whole number" if self.kind == "integer" else "a number"
                 if math.isfinite(self.most):
@@ -83,8 +84,9 @@ class SettingKey:
                 return given if isinstance(given, bool) else None
             case "path" if isinstance(given, str | Path) and str(given):
                 return base / Path(given).expanduser()
-            case "texts" if isinstance(given, list | tuple) and all(isinstance(t, str) and t for t in given):
-                return tuple(given)
+            case "texts" if isinstance(given, list | tuple):
+                fit = all(isinstance(text, str) and re.fullmatch(self.pattern, text) for text in given)
+                return tuple(given) if fit else None
             case "integer" if isinstance(given, int) and not isinstance(given, bool):
                 return given if self.least <= given <= self.most else None
             case "number" if isinstance(given, int | float) and not isinstance(given, bool):
@@ -157,6 +159,22 @@ KEYS: tuple[SettingKey, ...] = (
     ),
     SettingKey("store_bytes", "integer", "budget of frames and checkpoints [bytes]", "--store-bytes", 1),
     SettingKey("reserve_bytes", "integer", "room on the disk that is left to others [bytes]", least=0),
+    SettingKey("upload_bytes", "integer", "most bytes of an uploaded archive", least=0, most=4 << 30),
+    SettingKey("upload_cells", "integer", "most cells of an uploaded case", least=1, most=MAX_CELLS),
+    SettingKey(
+        "upload_memory_bytes",
+        "integer",
+        "most memory of the process that imports a case [bytes]",
+        least=1 << 30,
+    ),
+    SettingKey("upload_time_s", "number", "most time of an import [s]", least=1, most=86_400),
+    SettingKey(
+        "channels",
+        "texts",
+        "what runs may keep of a frame beside its depth",
+        pattern="|".join(CHANNEL_NAMES),
+        allowed=" or ".join(CHANNEL_NAMES),
+    ),
     SettingKey(
         "worker_silence_s",
         "number",
@@ -187,15 +205,6 @@ KEYS: tuple[SettingKey, ...] = (
         pattern="|".join(LEVELS),
         allowed=", ".join(LEVELS),
     ),
-    SettingKey("upload_bytes", "integer", "most bytes of an uploaded archive", least=0, most=4 << 30),
-    SettingKey("upload_cells", "integer", "most cells of an uploaded case", least=1, most=MAX_CELLS),
-    SettingKey(
-        "upload_memory_bytes",
-        "integer",
-        "most memory of the process that imports a case [bytes]",
-        least=1 << 30,
-    ),
-    SettingKey("upload_time_s", "number", "most time of an import [s]", least=1, most=86_400),
     _limit("max_runs", "runs that a token may keep"),
     _limit("max_cells", "cells that the runs of a token may compute at the same time"),
     _limit("max_gpu_bytes", "GPU memory that the runs of a token may take [bytes]"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from protocol import CHANNEL_NAMES
 from solver_service.store import default_data_dir
 from solver_service.uploads.import_messages import ImportLimits
 from solver_service.uploads.upload_rules import UploadRules
@@ -39,14 +40,15 @@ class ServiceSettings:
         restart_within_s: the time in which these attempts count [s].
         store_bytes: most bytes of frames and checkpoints; None for as much as the disk has.
         reserve_bytes: room on the disk that is left to others [bytes].
-        worker_silence_s: how long a worker may give no sign at all before another takes its run [s].
-        worker_stall_s: how long it may do one and the same thing, such as a step or a compilation [s].
-        log_format: "text" or "json".
-        log_level: least level of the lines that are written.
         upload_bytes: most bytes of an uploaded archive.
         upload_cells: most cells of an uploaded case.
         upload_memory_bytes: most memory of the process that imports one [bytes].
         upload_time_s: most time that the import of one may take [s].
+        channels: what runs may keep beside the depth; none keeps nothing.
+        worker_silence_s: how long a worker may give no sign at all before another takes its run [s].
+        worker_stall_s: how long it may do one and the same thing, such as a step or a compilation [s].
+        log_format: "text" or "json".
+        log_level: least level of the lines that are written.
         max_runs: runs that a token may keep; None for no limit, as with all that follow.
         max_cells: cells that the runs of a token may compute at the same time.
         max_gpu_bytes: GPU memory that the runs of a token may take [bytes].
@@ -74,14 +76,15 @@ class ServiceSettings:
     restart_within_s: float = 600.0
     store_bytes: int | None = None
     reserve_bytes: int = 256 << 20
-    worker_silence_s: float = 30.0
-    worker_stall_s: float = 600.0
-    log_format: str = "text"
-    log_level: str = "warning"
     upload_bytes: int = 1 << 30
     upload_cells: int = 20_000_000
     upload_memory_bytes: int = 8 << 30
     upload_time_s: float = 600.0
+    channels: tuple[str, ...] = CHANNEL_NAMES
+    worker_silence_s: float = 30.0
+    worker_stall_s: float = 600.0
+    log_format: str = "text"
+    log_level: str = "warning"
     max_runs: int | None = None
     max_cells: int | None = None
     max_gpu_bytes: int | None = None

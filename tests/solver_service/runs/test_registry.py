@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from protocol import CHANNEL_NAMES
 from solver_service.errors import RunError, StoreError
 from solver_service.runs import Run, RunRegistry, RunStatus
 from solver_service.store import CheckpointStore, DataFolder, RunDatabase, StoredState
@@ -57,6 +58,12 @@ def assert_same_to_the_bit(service: Service, run: Run, truth: Run) -> None:
     service.wait_for_status(run, RunStatus.FINISHED)
     for ours, theirs in zip(packed_frames(service, run), packed_frames(service, truth), strict=True):
         assert ours.partition(run.run.encode())[2] == theirs.partition(truth.run.encode())[2]
+    for index in range(0, LAST + 1, 4):
+        for name in CHANNEL_NAMES:
+            ours, theirs = (
+                service.call(service.registry.channels.read(each.run, index, name)) for each in (run, truth)
+            )
+            assert ours.partition(run.run.encode())[2] == theirs.partition(truth.run.encode())[2]
     states = [final_state(service, each) for each in (run, truth)]
     assert states[0].step_count == states[1].step_count
     assert states[0].scalars == states[1].scalars
