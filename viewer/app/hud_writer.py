@@ -6,11 +6,10 @@ import math
 import time as wall_clock
 
 from viewer.app.measuring import Measuring
-from viewer.app.picture_text import hud_text, loss_notice
+from viewer.app.picture_text import hud_text, loss_notice, only_warnings
 from viewer.app.run_control import RunControl
 from viewer.app.shown_run import ShownRun
-from viewer.render import HudText
-from viewer.units import Units
+from viewer.render import HudText, RenderOptions
 from viewer.world import PlaybackClock
 
 __all__ = ["HudWriter"]
@@ -35,34 +34,35 @@ class HudWriter:
         self._drawn: HudText | None = None
         self._checked = -math.inf
 
-    def write(self, shown: ShownRun, units: Units) -> HudText:
+    def write(self, shown: ShownRun, options: RenderOptions) -> HudText:
         """Return the text as it is now; it counts as drawn."""
-        self._drawn = self._text(shown, units)
+        self._drawn = self._text(shown, options)
         return self._drawn
 
-    def is_old(self, shown: ShownRun, units: Units, now: float) -> bool:
+    def is_old(self, shown: ShownRun, options: RenderOptions, now: float) -> bool:
         """Whether the picture is to be drawn anew for its text alone; looked at not too often.
 
         Args:
             shown: the run on the picture.
-            units: units to write.
+            options: what the user has chosen.
             now: wall time [s, monotonic].
         """
         if now - self._checked < PERIOD_S:
             return False
         self._checked = now
-        return self._text(shown, units) != self._drawn
+        return self._text(shown, options) != self._drawn
 
-    def _text(self, shown: ShownRun, units: Units) -> HudText:
+    def _text(self, shown: ShownRun, options: RenderOptions) -> HudText:
         desk = self._control.desk
         notice = ""
         if not desk.is_open:
             notice = loss_notice(desk.connection_sentence(), desk.data_age(wall_clock.monotonic()))
-        return hud_text(
+        text = hud_text(
             shown,
             self._clock.time,
             desk.book.progress.get(shown.run),
             self._control.recalculated,
             notice,
-            self._measuring.text(shown, units),
+            self._measuring.text(shown, options.units),
         )
+        return text if options.show_text else only_warnings(text)

@@ -9,7 +9,7 @@ from viewer.render import HudText
 from viewer.view_status import PointReadout, clock_text, time_text
 from viewer.world import ProbeReading
 
-__all__ = ["hud_text", "loss_notice", "readout"]
+__all__ = ["hud_text", "loss_notice", "only_warnings", "readout"]
 
 
 def hud_text(
@@ -48,6 +48,13 @@ def hud_text(
         detail="\n".join(lines),
         is_hypothetical=info.hypothetical,
         notice=notice,
+    )
+
+
+def only_warnings(text: HudText) -> HudText:
+    """Return what is told on every picture: that an event is hypothetical, and that the data is old."""
+    return HudText(
+        legend=False, scale_and_north=False, is_hypothetical=text.is_hypothetical, notice=text.notice
     )
 
 

@@ -13,8 +13,9 @@ import numpy.typing as npt
 
 from viewer.app.picture_file import picture_size, save_png
 from viewer.app.picture_quality import interactive, is_software, still
+from viewer.app.picture_text import only_warnings
 from viewer.commands import SavePicture
-from viewer.render import FrameInputs, FrameStats, HudText, Renderer, RenderOptions, check_context
+from viewer.render import FrameInputs, FrameStats, Renderer, RenderOptions, check_context
 from viewer.world import Heightfield
 
 __all__ = ["Scene", "Stage"]
@@ -144,14 +145,7 @@ class Stage:
         options = still(inputs.options)
         scale = min(options.render_scale, longest / max(size))
         if not order.with_text and inputs.hud is not None:
-            # That an event is hypothetical, or the data old, is told on every picture.
-            warnings = HudText(
-                legend=False,
-                scale_and_north=False,
-                is_hypothetical=inputs.hud.is_hypothetical,
-                notice=inputs.hud.notice,
-            )
-            inputs = dataclasses.replace(inputs, hud=warnings)
+            inputs = dataclasses.replace(inputs, hud=only_warnings(inputs.hud))
         inputs = dataclasses.replace(inputs, options=dataclasses.replace(options, render_scale=scale))
         colour = self.context.renderbuffer(size, 3)
         target = self.context.framebuffer([colour])

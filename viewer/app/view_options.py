@@ -11,7 +11,7 @@ from viewer.render import RenderOptions
 from viewer.units import UNITS
 from viewer.world import WaterColour
 
-__all__ = ["OPTION_NAMES", "changed_options"]
+__all__ = ["OPTION_NAMES", "changed_options", "option_values"]
 
 _SWITCHES = (
     "wireframe",
@@ -20,6 +20,8 @@ _SWITCHES = (
     "show_terrain",
     "show_sky",
     "show_imagery",
+    "show_edits",
+    "show_text",
     "full_mesh",
     "fog",
     "flow_arrows",
@@ -63,3 +65,14 @@ def changed_options(options: RenderOptions, name: str, value: bool | float | str
         raise CommandError(f"option {name!r} is unknown; known are {', '.join(OPTION_NAMES)}")
     kind = "a number" if name in _NUMBERS else "true or false"
     raise CommandError(f"option {name} = {value!r} is not allowed; it must be {kind}")
+
+
+def option_values(options: RenderOptions) -> tuple[tuple[str, bool | float | str], ...]:
+    """Return every option with its value, as `changed_options` takes them."""
+    values: list[tuple[str, bool | float | str]] = []
+    for name in OPTION_NAMES:
+        value = getattr(options, name)
+        if name in _CHOICES:
+            value = next(key for key, chosen in _CHOICES[name].items() if chosen == value)
+        values.append((name, value))
+    return tuple(values)

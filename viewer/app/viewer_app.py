@@ -29,7 +29,7 @@ from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
 from viewer.app.status_report import program_status, run_status
 from viewer.app.traffic import Traffic
-from viewer.app.view_options import changed_options
+from viewer.app.view_options import changed_options, option_values
 from viewer.app.water_feed import WaterFeed
 from viewer.app.water_view import WaterView
 from viewer.commands import (
@@ -56,7 +56,7 @@ from viewer.commands import (
 )
 from viewer.errors import ViewerError
 from viewer.net import ChannelLoader, ConnectionThread, FrameLoader
-from viewer.render import FrameInputs, RenderOptions
+from viewer.render import EditOverlay, FrameInputs, RenderOptions
 from viewer.view_status import ViewStatus
 from viewer.world import Heightfield, MapView, PlaybackClock
 
@@ -216,7 +216,7 @@ class ViewerApp:
         changed = self._picture_stale
         # Never before a branch: its first frame is not to wait for a picture of its parent.
         if self.shown is not None and not self.is_busy:
-            changed |= self._hud.is_old(self.shown, self.options.units, now)
+            changed |= self._hud.is_old(self.shown, self.options, now)
         self._picture_stale = False
         self.presenting.advance(self.camera_work, now)
         shown = self.shown
@@ -286,9 +286,9 @@ class ViewerApp:
         inputs = FrameInputs(
             camera=self.camera_work.camera,
             water=self.feed.pair,
-            edits=self.measuring.overlay(edit_overlay(self.shown, self.control.editing), self.shown),
+            edits=self.measuring.overlay(self._marks(self.shown), self.shown),
             options=self.options,
-            hud=self._hud.write(self.shown, self.options.units),
+            hud=self._hud.write(self.shown, self.options),
             difference=self.comparison.difference,
             is_outdated=not self.desk.is_open,
         )
@@ -333,6 +333,9 @@ class ViewerApp:
 
     # --- within ---------------------------------------------------------------------------------------
 
+    def _marks(self, shown: ShownRun) -> EditOverlay | None:
+        return edit_overlay(shown, self.control.editing) if self.options.show_edits else None
+
     def _click_reach(self) -> float:
         """How far on the ground looked at a click may miss [m]."""
         if self.camera_work is None:
@@ -352,7 +355,12 @@ class ViewerApp:
         now = wall_clock.monotonic()
         status = self._traffic.report(status, self.desk, now)
         status = self.presenting.report(status)
-        status = dataclasses.replace(status, units=self.options.units, loops=self.clock.loops)
+        status = dataclasses.replace(
+            status,
+            units=self.options.units,
+            options=option_values(self.options),
+            loops=self.clock.loops,
+        )
         if self.shown is None:
             return status
         status = run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch)

@@ -28,6 +28,7 @@ from viewer.commands import (
     Pause,
     SavePicture,
     Seek,
+    SetOption,
     TogglePlay,
 )
 from viewer.gui.conductor import Conductor, Painter
@@ -35,6 +36,7 @@ from viewer.gui.connection_panel import ConnectionPanel
 from viewer.gui.depth_plot import DepthPlot
 from viewer.gui.edit_panel import EditPanel
 from viewer.gui.kept_settings import KeptSettings
+from viewer.gui.layers_panel import LayersPanel
 from viewer.gui.picture_dialog import PictureDialog, ask_picture_path
 from viewer.gui.playback_bar import PlaybackBar
 from viewer.gui.presenting_menu import PresentingMenu
@@ -96,6 +98,7 @@ class MainWindow(QMainWindow):
         self.depth_plot = DepthPlot()
         self.water_panel = WaterPanel(self._dispatch)
         self.connection_panel = ConnectionPanel(self._dispatch)
+        self.layers_panel = LayersPanel(self._dispatch)
         self.status_line = StatusLine()
         self.setStatusBar(self.status_line)
         middle = QWidget()
@@ -110,6 +113,7 @@ class MainWindow(QMainWindow):
             self._dock("Terrain edits", self.edit_panel, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Depth at a point", self.depth_plot, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Water", self.water_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
+            self._dock("Layers", self.layers_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
             self._dock("Connection", self.connection_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
         ]
         self.docks[-1].hide()
@@ -142,6 +146,8 @@ class MainWindow(QMainWindow):
             self.depth_plot.show_status(status)
             self.water_panel.show_status(status)
             self.connection_panel.show_status(status)
+            self.layers_panel.show_status(status)
+            self.view_menu.show_status(status)
             self.presenting_menu.show_status(status)
             self.setWindowTitle(f"{status.title or 'no run'} - Flood Emergency Visualizer")
             self.scene.setCursor(_CURSORS.get(status.edit_tool, Qt.CursorShape.ArrowCursor))
@@ -163,7 +169,10 @@ class MainWindow(QMainWindow):
         if self._kept is None:
             return
         self._kept.restore_window(self)
-        self.view_menu.choose(self._kept.options())
+        now = dict(self._conductor.status().options)
+        for name, value in self._kept.options().items():
+            if name in now and type(value) is type(now[name]):  # another version may have had others
+                self._dispatch(SetOption(name, value))
         self.view_menu.map_shown.setChecked(self._kept.map_shown())
         self._dispatch(self._kept.edit_settings())
 
@@ -171,7 +180,7 @@ class MainWindow(QMainWindow):
         if self._kept is None:
             return
         self._kept.keep_window(self)
-        self._kept.keep_options(self.view_menu.options())
+        self._kept.keep_options(dict(self._conductor.status().options))
         self._kept.keep_map_shown(self.view_menu.map_shown.isChecked())
         self._kept.keep_edit_settings(self._conductor.status().edit_settings)
 

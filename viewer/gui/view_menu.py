@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QDockWidget, QMenu, QWidget
 
 from viewer.commands import FlyTo, ResetView, SetOption, TopView
 from viewer.gui.conductor import Dispatch
+from viewer.view_status import ViewStatus
 
 __all__ = ["OptionValue", "ViewMenu"]
 
@@ -21,6 +22,7 @@ BLOCK_SIZES = (17.0, 33.0, 65.0)
 BORDERS = {"ragged": "Ragged blocks", "trim": "Trim", "pad": "Pad"}
 SUN_BEARINGS = ("North", "North-east", "East", "South-east", "South", "South-west", "West", "North-west")
 SUN_HEIGHTS_DEG = (10.0, 20.0, 30.0, 42.0, 60.0, 80.0)
+UNIT_NAMES = {"metric": "Metric", "us": "US customary"}
 NUMBERED_VIEWS = 9
 
 
@@ -55,6 +57,7 @@ class ViewMenu(QMenu):
             "Sun from", "light_azimuth_deg", bearings, 315.0, lambda v: SUN_BEARINGS[int(float(v) / 45.0)]
         )
         self._choice("Sun height", "light_elevation_deg", SUN_HEIGHTS_DEG, 42.0, lambda v: f"{v:g} deg")
+        self._choice("Units", "units", tuple(UNIT_NAMES), "metric", lambda v: UNIT_NAMES[str(v)])
         self._switch("Imagery", "show_imagery", None, checked=True)
         self.addSeparator()
         self._choice("Terrain error", "tau_px", TAUS_PX, 2.0, lambda v: f"{v:g} px")
@@ -79,20 +82,21 @@ class ViewMenu(QMenu):
         self.insertSeparator(self.actions()[len(actions)])
 
     def options(self) -> dict[str, OptionValue]:
-        """Return what is chosen, by option name."""
+        """Return what is marked, by option name."""
         chosen: dict[str, OptionValue] = {name: action.isChecked() for name, action in self._switches.items()}
         for name, choices in self._choices.items():
-            chosen[name] = next(value for value, action in choices.items() if action.isChecked())
+            for value, action in choices.items():
+                if action.isChecked():
+                    chosen[name] = value
         return chosen
 
-    def choose(self, options: dict[str, OptionValue]) -> None:
-        """Choose by option name, as a click would; what the menu does not offer is left out."""
-        for name, value in options.items():
-            if name in self._switches and isinstance(value, bool):
-                self._switches[name].setChecked(value)
-            action = None if isinstance(value, bool) else self._choices.get(name, {}).get(value)
-            if action is not None and not action.isChecked():
-                action.trigger()
+    def show_status(self, status: ViewStatus) -> None:
+        """Mark what is chosen; a value that the menu does not offer leaves its entries unmarked."""
+        for name, value in status.options:
+            if name in self._switches:
+                _mark(self._switches[name], value is True)
+            for offered, action in self._choices.get(name, {}).items():
+                _mark(action, offered == value)
 
     def show_views(self, views: dict[str, FlyTo], forget: Callable[[str], None]) -> None:
         """Offer the kept views.
@@ -138,6 +142,7 @@ class ViewMenu(QMenu):
     ) -> None:
         menu = self.addMenu(text)
         group = QActionGroup(menu)
+        group.setExclusionPolicy(QActionGroup.ExclusionPolicy.ExclusiveOptional)
         self._choices[option] = {}
         for value in values:
             action = menu.addAction(label(value))
@@ -146,3 +151,9 @@ class ViewMenu(QMenu):
             action.triggered.connect(lambda _on, value=value: self._dispatch(SetOption(option, value)))
             group.addAction(action)
             self._choices[option][value] = action
+
+
+def _mark(action: QAction, on: bool) -> None:
+    blocked = action.blockSignals(True)
+    action.setChecked(on)
+    action.blockSignals(blocked)

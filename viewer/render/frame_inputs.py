@@ -179,6 +179,10 @@ class RenderOptions:
     show_sky: bool = True
     show_skirt: bool = True
     """Walls below the border of the map."""
+    show_edits: bool = True
+    """Lines and colours where the ground is edited."""
+    show_text: bool = True
+    """Title, legend, scale bar and north arrow; that an event is hypothetical is told in any case."""
     show_imagery: bool = True
     """Use the imagery texture, if there is one."""
     contour_interval: float = 0.0

@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QDockWidget, QMainWindow
 from pytestqt.qtbot import QtBot
 
 from tests.viewer.gui.conftest import OpenWindow
-from viewer.commands import ChangeEditSettings, FlyTo
+from viewer.commands import ChangeEditSettings, FlyTo, SetOption
 from viewer.gui.kept_settings import VIEWS_KEPT, KeptSettings
 from viewer.view_status import EditSettings
 
@@ -92,9 +92,10 @@ def test_a_window_opened_again_looks_as_it_was_left(
 ) -> None:
     window = opened.window
     window._kept = settings(path)
-    window.view_menu.choose({"exaggeration": 2.0})
+    opened.app.dispatch(SetOption("exaggeration", 2.0))
     opened.app.dispatch(ChangeEditSettings(width=75.0))
     opened.until(lambda: opened.app.status().edit_settings.width == 75.0)
+    opened.until(lambda: dict(opened.app.status().options)["exaggeration"] == 2.0)
     monkeypatch.setattr(
         "viewer.gui.main_window.QInputDialog.getText", lambda *args, **kwargs: (kwargs["text"], True)
     )

@@ -8,6 +8,7 @@ from pytestqt.qtbot import QtBot
 from tests.viewer.gui.conftest import Recorder
 from viewer.commands import FlyTo, SetOption, TopView
 from viewer.gui.view_menu import ViewMenu
+from viewer.view_status import ViewStatus
 
 VIEW = FlyTo(1200.0, 2300.0, 400.0, 30.0, 45.0)
 
@@ -42,17 +43,18 @@ def test_entries_make_their_commands(menu: ViewMenu, record: Recorder, kept: lis
     assert kept == ["now"]
 
 
-def test_options_chosen_come_back_and_are_told(menu: ViewMenu, record: Recorder) -> None:
+def test_what_is_chosen_elsewhere_is_marked_and_asks_for_nothing(menu: ViewMenu, record: Recorder) -> None:
     before = menu.options()
     assert before["exaggeration"] == 1.0
     assert before["show_blocks"] is False
-    menu.choose({"exaggeration": 3.0, "show_blocks": True, "wireframe": False})
+    menu.show_status(
+        ViewStatus(
+            options=(("exaggeration", 3.0), ("show_blocks", True), ("wireframe", False), ("units", "us"))
+        )
+    )
 
-    assert menu.options() == {**before, "exaggeration": 3.0, "show_blocks": True}
-    assert set(map(repr, record.commands)) == {
-        repr(SetOption("exaggeration", 3.0)),
-        repr(SetOption("show_blocks", True)),
-    }
+    assert menu.options() == {**before, "exaggeration": 3.0, "show_blocks": True, "units": "us"}
+    assert record.commands == []
 
 
 def test_actions_of_panels_stand_first(menu: ViewMenu, window: QWidget) -> None:
@@ -61,10 +63,10 @@ def test_actions_of_panels_stand_first(menu: ViewMenu, window: QWidget) -> None:
     assert [action.text() for action in menu.actions()[:4]] == ["Colours", "Arrows", "", "Whole terrain"]
 
 
-def test_what_the_menu_does_not_offer_is_not_chosen(menu: ViewMenu, record: Recorder) -> None:
-    menu.choose({"exaggeration": 2.75, "gravity": 1.0, "wireframe": 7.0})
+def test_a_value_that_the_menu_does_not_offer_is_not_marked(menu: ViewMenu) -> None:
+    menu.show_status(ViewStatus(options=(("exaggeration", 2.75), ("gravity", 1.0))))
 
-    assert record.commands == []
+    assert "exaggeration" not in menu.options()
 
 
 def test_kept_views_are_flown_to_and_forgotten(menu: ViewMenu, record: Recorder) -> None:
