@@ -8,6 +8,7 @@ from pytestqt.qtbot import QtBot
 from tests.viewer.gui.conftest import OpenWindow
 from viewer.commands import ChangeEditSettings, FlyTo, SetOption
 from viewer.gui.kept_settings import VIEWS_KEPT, KeptSettings
+from viewer.render import RenderOptions
 from viewer.view_status import EditSettings
 
 VIEW = FlyTo(1200.0, 2300.0, 400.0, 30.0, 45.0)
@@ -49,7 +50,7 @@ def test_what_is_kept_comes_back_from_the_file(path: Path) -> None:
 
 def test_what_is_not_valid_is_left_out(path: Path) -> None:
     store = QSettings(str(path), QSettings.Format.IniFormat)
-    store.setValue("picture/options", '{"exaggeration": "big", "tau_px": NaN, "wireframe": true}')
+    store.setValue("picture/options", '{"exaggeration": [2], "tau_px": NaN, "wireframe": true}')
     store.setValue("edits/tool", '{"width": "wide"}')
     store.setValue("views/Valley", '{"one": {"x": 1.0}, "two": 5, "three": {"x": 1.0, "y": 2.0}}')
     store.setValue("picture/map", "[1, 2")
@@ -113,12 +114,14 @@ def test_a_window_opened_again_looks_as_it_was_left(
 
 def test_a_window_takes_up_what_was_kept(opened: OpenWindow, path: Path) -> None:
     kept = settings(path)
-    kept.keep_options({"exaggeration": 5.0})
+    kept.keep_options({"exaggeration": 5.0, "tau_px": "large", "gravity": 9.81})
     kept.keep_map_shown(False)
     kept.keep_edit_settings(EditSettings(75.0, 3.0, "lower", "modulate"))
     opened.window._kept = kept
     opened.window._restore()
 
     assert opened.app.options.exaggeration == 5.0
+    assert opened.app.options.tau_px == RenderOptions().tau_px
+    assert opened.app.message == ""
     assert not opened.window.reference_map.isVisible()
     opened.until(lambda: opened.status.edit_settings.operation == "lower")
