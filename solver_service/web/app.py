@@ -17,7 +17,7 @@ from solver_service.runs import RunRegistry
 from solver_service.uploads.upload_desk import UploadDesk
 from solver_service.web.auth import Access, Gate
 from solver_service.web.error_codes import http_status, wire_code
-from solver_service.web.metrics import CONTENT_TYPE, metrics_text, unready_reason
+from solver_service.web.metrics import CONTENT_TYPE, Metrics, unready_reason
 from solver_service.web.operator_page import page_router
 from solver_service.web.overview import OverviewSource
 from solver_service.web.overview_feed import OverviewFeed
@@ -68,7 +68,8 @@ def create_app(
 
     Returns:
         The application; `app.state.connections` is the set of open streams, `app.state.accepts` is set while
-        new viewers are welcome, `app.state.feed` is the feed of the operator's page.
+        new viewers are welcome, `app.state.feed` is the feed of the operator's page,
+        `app.state.metrics` what `/metrics` tells.
     """
     app = FastAPI(title="FEV solver service", version=server_version())
     connections: set[StreamConnection] = set()
@@ -76,6 +77,7 @@ def create_app(
     app.state.accepts = False
     source = OverviewSource(registry, desk, connections, tokens.path.parent, store_bytes)
     app.state.feed = OverviewFeed(source.collect)
+    app.state.metrics = Metrics(registry, quotas, connections, tokens.path.parent)
     app.add_middleware(RequestLog)
 
     def needs(scope: Scope) -> Any:
@@ -115,9 +117,8 @@ def create_app(
 
     @app.get("/metrics", dependencies=[needs(Scope.VIEWER)])
     async def metrics() -> Response:
-        """Gauges in the text format of Prometheus."""
-        text = metrics_text(registry, quotas, len(connections), tokens.path.parent)
-        return Response(text, headers={"Content-Type": CONTENT_TYPE})
+        """All metrics in the text format of Prometheus."""
+        return Response(await app.state.metrics.text(), headers={"Content-Type": CONTENT_TYPE})
 
     @app.get("/version", dependencies=[needs(Scope.VIEWER)])
     def version() -> dict[str, str]:

@@ -130,6 +130,7 @@ class _Server(uvicorn.Server):
         watches = (
             watch_tokens(self._gate, self._app.state.connections),
             watch_disk(self._quotas, self._registry),
+            self._app.state.metrics.loop_lag.work(),
         )
         self._watches = [asyncio.get_running_loop().create_task(watch) for watch in watches]
         await super().startup(sockets)

@@ -1,44 +1,41 @@
-import re
+import math
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import httpx
+from prometheus_client.parser import text_string_to_metric_families
 
 import protocol
 from bench.service_process import ServiceClient, ServiceProcess
-from solver_service.web.metrics import Family, unready_reason
+from solver_service.web.metrics import unready_reason
 
-SAMPLE = re.compile(r'([a-z_]+)(?:\{([a-z]+)="((?:[^"\\\n]|\\.)*)"\})? (\S+)')
+Samples = dict[tuple[str, str], float]
 
 
-def scraped(service: ServiceProcess) -> dict[tuple[str, str], float]:
-    """The samples of /metrics by name and label value; every line must be of the text format."""
+def scraped(service: ServiceProcess) -> Samples:
+    """The samples of /metrics by name and value of the first label."""
     headers = {"Authorization": f"Bearer {service.token}"}
     answer = httpx.get(f"{service.http}/metrics", headers=headers, timeout=30.0)
     assert answer.status_code == 200
     assert answer.headers["content-type"] == "text/plain; version=0.0.4; charset=utf-8"
-    assert answer.text.endswith("\n")
-    samples = {}
-    typed = set()
-    for line in answer.text.splitlines():
-        if line.startswith("# TYPE "):
-            typed.add(line.split()[2])
-        elif not line.startswith("# HELP "):
-            match = SAMPLE.fullmatch(line)
-            assert match is not None, line
-            assert match[1] in typed
-            assert (match[1], match[3] or "") not in samples
-            samples[match[1], match[3] or ""] = float(match[4])
+    samples: Samples = {}
+    for family in text_string_to_metric_families(answer.text):
+        assert family.documentation, family.name
+        assert family.type in ("gauge", "counter", "histogram"), family.name
+        for sample in family.samples:
+            key = (sample.name, next(iter(sample.labels.values()), ""))
+            assert key not in samples
+            samples[key] = sample.value
     return samples
 
 
-def test_a_gauge_is_told_in_the_text_format() -> None:
-    gauge = Family("fev_x_bytes", "What it is.", {(): 2, (("name", 'a"b\\c\nd'),): 0.5})
-    assert gauge.lines() == [
-        "# HELP fev_x_bytes What it is.",
-        "# TYPE fev_x_bytes gauge",
-        "fev_x_bytes 2",
-        'fev_x_bytes{name="a\\"b\\\\c\\nd"} 0.5',
-    ]
+def scraped_until(service: ServiceProcess, test: Callable[[Samples], bool]) -> Samples:
+    ends = time.monotonic() + 20.0
+    while not test(samples := scraped(service)):
+        assert time.monotonic() < ends, samples
+        time.sleep(0.1)
+    return samples
 
 
 def test_the_metrics_follow_what_happens(service: ServiceProcess) -> None:
@@ -61,6 +58,42 @@ def test_the_metrics_follow_what_happens(service: ServiceProcess) -> None:
     assert during["fev_workers_with_run", ""] >= 1
     assert during["fev_data_free_bytes", ""] > 0
     assert during["process_resident_memory_bytes", ""] > 1e7
+    assert 0 < during["process_cpu_seconds_total", ""] < 1e4
+
+
+def test_memory_and_time_of_each_worker_and_the_room_of_each_kind_are_told(service: ServiceProcess) -> None:
+    with ServiceClient(service) as client:
+        before = scraped(service)
+        run = client.do(protocol.StartRun, case="dam-break", duration=50.0)["run"]
+        client.first(protocol.RunChanged, lambda m: m.run.run == run and m.run.status == "finished")
+        after = scraped_until(
+            service, lambda s: s["fev_store_bytes", "checkpoints"] > before["fev_store_bytes", "checkpoints"]
+        )
+    assert after["fev_store_bytes", "frames"] > before["fev_store_bytes", "frames"]
+    assert ("fev_store_bytes", "channels") in after
+    workers = {label for name, label in after if name == "fev_worker_resident_memory_bytes"}
+    assert len(workers) == after["fev_workers", ""] >= 1
+    for worker in workers:
+        assert 1e7 < after["fev_worker_resident_memory_bytes", worker] < 1e11
+        assert 0.0 < after["fev_worker_cpu_seconds_total", worker] < 1e4
+
+
+def test_the_lag_of_the_event_loop_is_a_histogram_that_goes_on(service: ServiceProcess) -> None:
+    before = scraped(service)
+    after = scraped_until(
+        service,
+        lambda s: (
+            s["fev_event_loop_lag_seconds_count", ""] >= before["fev_event_loop_lag_seconds_count", ""] + 5
+        ),
+    )
+    bounds = {
+        float(label): value
+        for (name, label), value in after.items()
+        if name == "fev_event_loop_lag_seconds_bucket"
+    }
+    assert 0.02 in bounds  # the floor of the 99th percentile can be read off
+    assert list(bounds.values()) == sorted(bounds.values())
+    assert bounds[math.inf] == after["fev_event_loop_lag_seconds_count", ""]
 
 
 def test_a_service_is_ready_while_it_can_write_its_runs(tmp_path: Path) -> None:
