@@ -185,6 +185,8 @@ class ViewStatus:
         undone_edits: edits that redoing would bring back, the next one first.
         edit_tool: the tool in the user's hand: "line", "area", "select", "level", or empty.
         selected_edit: id of the selected edit.
+        compare_mode: how it is compared, "difference" or "swipe".
+        swipe_at: where the divider stands, as a share of the width; None when there is none.
         water_colour: what the water is to be coloured by.
         water_colours: what the shown run lets it be coloured by.
         water_note: why the colours wanted are not there yet, one sentence.
@@ -206,6 +208,8 @@ class ViewStatus:
     runs: tuple[RunRow, ...] = ()
     shown_run: str | None = None
     compared_run: str | None = None
+    compare_mode: str = "difference"
+    swipe_at: float | None = None
     title: str = ""
     hypothetical: bool = False
     has_terrain: bool = False

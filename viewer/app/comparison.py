@@ -1,24 +1,33 @@
-"""The difference between the run on the picture and another one at the same time."""
+"""The run on the picture against another one at the same time: by difference, or side by side."""
 
 from __future__ import annotations
 
+import dataclasses
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 import protocol
+from viewer.app.channel_feed import ChannelFeed
+from viewer.app.other_run import OtherRun
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
 from viewer.app.water_feed import WaterFeed
-from viewer.commands import CommandError
+from viewer.commands import Command, CommandError, CompareWith, MoveSwipe
 from viewer.net import FrameKey, FrameLoader
-from viewer.render import DepthDifference
-from viewer.view_status import time_text
+from viewer.render import Beside, DepthDifference, FrameInputs, RenderOptions
+from viewer.view_status import ViewStatus, time_text
 
 __all__ = ["Comparison"]
 
 AT_REST = ("paused", "finished", "stopped", "failed")
 """States of a run in which the stream may be lent to another one."""
+
+
+MODES = ("difference", "swipe")
+SWIPE_RANGE = (0.03, 0.97)
+"""The divider stays so far from the sides, as a share of the width."""
 
 
 class Comparison:
@@ -28,16 +37,28 @@ class Comparison:
         desk: the dealings with the service.
         loader: where frames lie and are decoded.
         feed: the water on the picture; it is told which frames of the other run are wanted too.
+        channels: where velocity and maxima come from.
         take_back: lets the stream serve the shown run again.
 
     Attributes:
         other: the other run; None compares with nothing.
         difference: what the picture shows of it; None when both runs share the frame, or it is not here yet.
+        beside: what is drawn of the other run right of the divider; None without a divider.
+        swipe_at: where the divider stands, as a share of the picture's width.
     """
 
     def __init__(
-        self, desk: ServiceDesk, loader: FrameLoader, feed: WaterFeed, take_back: Callable[[], None]
+        self,
+        desk: ServiceDesk,
+        loader: FrameLoader,
+        feed: WaterFeed,
+        channels: ChannelFeed,
+        take_back: Callable[[], None],
     ) -> None:
+        self.beside: OtherRun | None = None
+        self.swipe_at = 0.5
+        self._channels = channels
+        self._is_moved = False
         self.other: ShownRun | None = None
         self.difference: DepthDifference | None = None
         self._desk = desk
@@ -45,13 +66,36 @@ class Comparison:
         self._feed = feed
         self._take_back = take_back
         self._has_stream = False
+        self._shown: ShownRun | None = None
 
-    def begin(self, shown: ShownRun, run: str | None) -> None:
+    def carry_out(self, command: Command, shown: ShownRun | None) -> bool:
+        """Carry out a command of comparing; return whether it was one.
+
+        Raises:
+            CommandError: as for `begin`; or the divider is to stand at what is no share.
+        """
+        if isinstance(command, MoveSwipe):
+            if not math.isfinite(command.at):
+                raise CommandError(f"MoveSwipe.at = {command.at!r} is not allowed; it must be from 0 to 1")
+            self.swipe_at = min(max(command.at, SWIPE_RANGE[0]), SWIPE_RANGE[1])
+            self._is_moved = True
+            return True
+        if not isinstance(command, CompareWith):
+            return False
+        if shown is None:
+            raise CommandError("no run is shown yet")
+        self.begin(shown, command.run, command.mode)
+        self._is_moved = True
+        return True
+
+    def begin(self, shown: ShownRun, run: str | None, mode: str = "difference") -> None:
         """Compare with a run; None compares with nothing.
 
         Raises:
-            CommandError: the run is unknown, on the picture itself, or has another terrain.
+            CommandError: mode or run are unknown, or the run is on the picture or has another terrain.
         """
+        if mode not in MODES:
+            raise CommandError(f"CompareWith.mode = {mode!r} is unknown; known are {', '.join(MODES)}")
         self.end()
         if run is None:
             return
@@ -62,12 +106,17 @@ class Comparison:
             raise CommandError("a run cannot be compared with itself; choose another one")
         if info.grid.geometry != shown.grid or info.output_interval != shown.info.output_interval:
             raise CommandError(f"run {run!r} has another terrain or output interval; it cannot be compared")
-        self.other = ShownRun(info, shown.document.base, self._loader, shown.heightfield)
+        if mode == "swipe":
+            book = self._desk.book
+            self.beside = OtherRun(shown, run, self._loader, book, self._feed, self._channels, self._request)
+            self.other = self.beside.run
+        else:
+            self.other = ShownRun(info, shown.document.base, self._loader, shown.heightfield)
 
     def end(self) -> None:
         """Compare with nothing."""
         self.return_stream()
-        self.other = self.difference = None
+        self.other = self.difference = self.beside = None
         self._feed.also_wanted = ()
 
     def return_stream(self) -> None:
@@ -84,13 +133,46 @@ class Comparison:
         if other.next_missing() >= other.info.frame_count:
             self.return_stream()
 
-    def advance(self, shown: ShownRun) -> bool:
-        """Follow the water on the picture; return whether the difference has changed."""
+    def advance(self, shown: ShownRun, time: float, options: RenderOptions) -> bool:
+        """Follow the water on the picture; return whether the comparison has changed.
+
+        Args:
+            shown: the run on the picture.
+            time: playback time [s].
+            options: what the user wants of the picture.
+        """
         before = self.difference
+        changed, self._is_moved = self._is_moved, False
         if self.other is not None and (self.other.run == shown.run or self.other.grid != shown.grid):
             self.end()
+        if self.beside is not None:
+            self._shown = shown
+            return self.beside.advance(time, options) or changed
         self.difference = None if self.other is None else self._difference(shown, self.other)
-        return self.difference is not before
+        return self.difference is not before or changed
+
+    def dressed(self, inputs: FrameInputs, shown: ShownRun) -> FrameInputs:
+        """Return the inputs of a picture with the comparison."""
+        if self.beside is None:
+            return dataclasses.replace(inputs, difference=self.difference)
+        theirs = self.beside.inputs(inputs.camera, inputs.options, inputs.is_outdated)
+        right = self.beside.run
+        pair = Beside(self.swipe_at, right.heightfield, theirs, _name(shown), _name(right))
+        return dataclasses.replace(inputs, beside=pair)
+
+    def told(self, status: ViewStatus) -> ViewStatus:
+        """Return `status` with what is compared."""
+        return dataclasses.replace(
+            status,
+            compared_run=None if self.other is None else self.other.run,
+            compare_mode="difference" if self.beside is None else "swipe",
+            swipe_at=None if self.beside is None else self.swipe_at,
+        )
+
+    def _request(self, index: int) -> None:
+        """Let a frame of the other run come."""
+        if self.other is not None and self._shown is not None:
+            self._fetch_missing(self._shown, self.other, self.other.frame_key(index))
 
     def _difference(self, shown: ShownRun, other: ShownRun) -> DepthDifference | None:
         pair, keys = self._feed.pair, self._feed.keys

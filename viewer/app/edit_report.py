@@ -20,20 +20,25 @@ from viewer.world import EditMeasure
 __all__ = ["edit_overlay", "edit_rows", "edit_text", "undone_rows"]
 
 
-def edit_overlay(shown: ShownRun, editing: Editing) -> EditOverlay | None:
-    """Return the marks of the working list and of what is drawn or moved; None when there is neither."""
+def edit_overlay(shown: ShownRun, editing: Editing | None) -> EditOverlay | None:
+    """Return the marks of the working list and of what is drawn or moved; None when there is neither.
+
+    Args:
+        shown: the run.
+        editing: the edit tool; None where nothing is edited.
+    """
     preview, document = shown.document.preview(), shown.document
     lines = []
     for listed in document.edits:
         is_moving = document.draft is not None and document.draft.id == listed.id
         edit = document.draft if is_moving and document.draft is not None else listed
         style = LineStyle.RAISE if edit.operation is protocol.Operation.raise_ else LineStyle.LOWER
-        if edit.id == editing.selection.selected:
+        if editing is not None and edit.id == editing.selection.selected:
             style = LineStyle.SELECTED
         width = edit.width if isinstance(edit, protocol.EditLine) else shown.grid.dx
         lines.append(DrapedLine(_path(edit), width, style))
-    drawing = editing.drawing
-    if drawing.is_on and drawing.vertices:
+    drawing = None if editing is None else editing.drawing
+    if drawing is not None and drawing.is_on and drawing.vertices:
         points = list(drawing.vertices)
         if drawing.hover is not None:
             points.append(drawing.hover)

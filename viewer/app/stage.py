@@ -62,6 +62,9 @@ class Stage:
         self._make_context = make_context
         self._context: moderngl.Context | None = None
         self._renderer: Renderer | None = None
+        self._other: Renderer | None = None
+        self._other_ground: Heightfield | None = None
+        self._divider: float | None = None
         self._ground: tuple[Heightfield, int] | None = None
         self.stats: FrameStats | None = None
         self.pictures = 0
@@ -116,13 +119,16 @@ class Stage:
             self._write(order, inputs, size)  # first: picking needs the picture on the screen to be the last
         if quality is not None:
             inputs = dataclasses.replace(inputs, options=quality(inputs.options))
-        self.stats = self._renderer.draw(target, size, inputs)
+        self.stats = self._draw(target, size, inputs)
+        self._divider = None if inputs.beside is None else inputs.beside.at * size[0]
         self.pictures += 1
         self._scene.note_painted(size)
 
     def ground_at(self, x: float, y: float) -> tuple[float, float] | None:
         """Return the map point (x, y) [m] seen at a pixel of the last picture, None for the sky."""
-        point = None if self._renderer is None else self._renderer.pick(x, y)
+        is_beside = self._divider is not None and x >= self._divider
+        renderer = self._other if is_beside else self._renderer
+        point = None if renderer is None else renderer.pick(x, y)
         return None if point is None else (point[0], point[1])
 
     def pixels(self, target: moderngl.Framebuffer, size: tuple[int, int]) -> npt.NDArray[np.uint8]:
@@ -134,9 +140,29 @@ class Stage:
         """Release the renderer; the context belongs to whoever made it."""
         if self._renderer is not None:
             self._renderer.release()
+        self._close_other()
         self._renderer = None
         self._ground = None
         self._context = None
+
+    def _draw(self, target: moderngl.Framebuffer, size: tuple[int, int], inputs: FrameInputs) -> FrameStats:
+        """Draw the run, and right of the divider the other one, if there is one."""
+        assert self._renderer is not None
+        beside = inputs.beside
+        if beside is None:
+            self._close_other()
+            return self._renderer.draw(target, size, inputs)
+        if self._other is None or beside.heightfield is not self._other_ground:
+            self._close_other()
+            self._other, self._other_ground = Renderer(self.context, beside.heightfield), beside.heightfield
+        theirs = dataclasses.replace(beside.inputs, options=inputs.options, hud=None)
+        self._other.draw(target, size, theirs, (beside.at, 1.0))
+        return self._renderer.draw(target, size, inputs, (0.0, beside.at))
+
+    def _close_other(self) -> None:
+        if self._other is not None:
+            self._other.release()
+        self._other = self._other_ground = None
 
     def _write(self, order: SavePicture, inputs: FrameInputs, shown: tuple[int, int]) -> None:
         assert self._renderer is not None
@@ -150,7 +176,7 @@ class Stage:
         colour = self.context.renderbuffer(size, 3)
         target = self.context.framebuffer([colour])
         try:
-            self._renderer.draw(target, size, inputs)
+            self._draw(target, size, inputs)
             save_png(Path(order.path), self.pixels(target, size))
         except OSError as error:
             self._scene.complain(f"the picture {order.path} could not be written: {error}")

@@ -35,7 +35,6 @@ from viewer.app.water_view import WaterView
 from viewer.commands import (
     Command,
     CommandError,
-    CompareWith,
     FlyTo,
     FollowLive,
     MoveHover,
@@ -114,8 +113,9 @@ class ViewerApp:
         self._map_maker = MapMaker()
         self._traffic = Traffic()
         self._levee_watch = LeveeWatch()
-        self.water = WaterView(self.feed, ChannelFeed(self.desk, ChannelLoader()))
-        self.comparison = Comparison(self.desk, loader, self.feed, self.control.resubscribe)
+        channels = ChannelFeed(self.desk, ChannelLoader())
+        self.water = WaterView(self.feed, channels)
+        self.comparison = Comparison(self.desk, loader, self.feed, channels, self.control.resubscribe)
         self.control.resuming = self.comparison.return_stream
         self.control.editing.reach = self._click_reach
         self.control.editing.look = lambda x, y: self.pointing.readout(x, y, self.shown)
@@ -167,12 +167,11 @@ class ViewerApp:
             or self.playback.carry_out(command)
             or self._steer(command)
             or self.measuring.carry_out(command, self.shown)
+            or self.comparison.carry_out(command, self.shown)
             or self.control.editing.carry_out(command, self.shown)
         ):
             return
         match command:
-            case CompareWith(run):
-                self.comparison.begin(self.control.require_run(), run)
             case SetOption(name, value):
                 self.options = changed_options(self.options, name, value)
                 if self.camera_work is not None:
@@ -226,7 +225,7 @@ class ViewerApp:
             if not self.control.is_held:
                 changed |= self.feed.advance(shown, self.clock.time)
             changed |= shown.refresh_ground(self.feed.moved)
-            changed |= self.comparison.advance(shown)
+            changed |= self.comparison.advance(shown, self.clock.time, self.options)
             changed |= self.water.advance(shown, self.options)
             self._status_stale |= self._levee_watch.look(shown, self.feed, self.options.depth_shown)
         if changed:
@@ -289,10 +288,9 @@ class ViewerApp:
             edits=self.measuring.overlay(self._marks(self.shown), self.shown),
             options=self.options,
             hud=self._hud.write(self.shown, self.options),
-            difference=self.comparison.difference,
             is_outdated=not self.desk.is_open,
         )
-        return self.water.dressed(inputs)
+        return self.comparison.dressed(self.water.dressed(inputs), self.shown)
 
     def note_painted(self, size: tuple[int, int]) -> None:
         """The inputs given last are on the picture; the latency of a recalculation ends here."""
@@ -365,7 +363,6 @@ class ViewerApp:
             return status
         status = run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch)
         status = self.water.told(status, self.shown, self.options)
-        other = self.comparison.other
-        compared = dataclasses.replace(status, compared_run=None if other is None else other.run)
+        compared = self.comparison.told(status)
         measured = self.measuring.report(compared, self.shown)
         return self.pointing.report(measured, self.shown)

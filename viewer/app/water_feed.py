@@ -31,7 +31,8 @@ class WaterFeed:
     Args:
         loader: where frames lie and are decoded.
         book: knows the edits below the water of each run.
-        request: asks the service for frame `index` of the shown run.
+        request: asks the service for frame `index` of the run.
+        main: the feed that the loader listens to, when this one stands beside it; None for the main one.
 
     Attributes:
         pair: the water on the picture, None before the first frame.
@@ -40,10 +41,17 @@ class WaterFeed:
         also_wanted: frames that something else needs at the same time.
     """
 
-    def __init__(self, loader: FrameLoader, book: RunBook, request: Callable[[int], None]) -> None:
+    def __init__(
+        self,
+        loader: FrameLoader,
+        book: RunBook,
+        request: Callable[[int], None],
+        main: WaterFeed | None = None,
+    ) -> None:
         self._loader = loader
         self._book = book
         self._request = request
+        self._main = main
         self._requested: dict[int, float] = {}
         self._beds: dict[Hashable, npt.NDArray[np.float32]] = {}
         self._moved: OrderedDict[Hashable, tuple[MovedBed, npt.NDArray[np.float32]]] = OrderedDict()
@@ -77,7 +85,10 @@ class WaterFeed:
         keys, alpha = self.wanted(shown, time)
         if not keys:
             return False
-        self._loader.want(list(dict.fromkeys([*keys[:2], *self.also_wanted, *keys[2:]])))
+        if self._main is None:
+            self._loader.want(list(dict.fromkeys([*keys[:2], *self.also_wanted, *keys[2:]])))
+        else:
+            self._main.also_wanted = tuple(keys)
         first, second = self._loader.get(keys[0]), self._loader.get(keys[1])
         if first is None or second is None:
             return False

@@ -63,6 +63,7 @@ from viewer.commands.presenting import FollowView, PresentView
 from viewer.commands.runs import (
     CompareWith,
     ConnectTo,
+    MoveSwipe,
     PauseRun,
     Recalculate,
     Reconnect,
@@ -105,6 +106,7 @@ __all__ = [
     "Loop",
     "MoveEdit",
     "MoveHover",
+    "MoveSwipe",
     "MoveVertex",
     "Pause",
     "PauseRun",

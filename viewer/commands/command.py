@@ -59,6 +59,7 @@ from viewer.commands.presenting import FollowView, PresentView
 from viewer.commands.runs import (
     CompareWith,
     ConnectTo,
+    MoveSwipe,
     PauseRun,
     Recalculate,
     Reconnect,
@@ -94,6 +95,7 @@ Command = (
     | StartRun
     | SelectRun
     | CompareWith
+    | MoveSwipe
     | PauseRun
     | ResumeRun
     | StopRun

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 __all__ = [
     "CompareWith",
     "ConnectTo",
+    "MoveSwipe",
     "PauseRun",
     "Recalculate",
     "Reconnect",
@@ -54,9 +55,21 @@ class SelectRun:
 
 @dataclass(frozen=True)
 class CompareWith:
-    """Colour the picture by the difference to another run at the same time; None ends the comparison."""
+    """Compare with another run at the same time; None ends the comparison.
+
+    `mode` "difference" colours the picture by how much deeper or shallower the water is than there, "swipe"
+    shows the other run right of a divider.
+    """
 
     run: str | None = None
+    mode: str = "difference"
+
+
+@dataclass(frozen=True)
+class MoveSwipe:
+    """Put the divider between two runs at `at`, a share of the picture's width from the left."""
+
+    at: float
 
 
 @dataclass(frozen=True)

@@ -44,6 +44,7 @@ from viewer.gui.reference_map import ReferenceMap
 from viewer.gui.run_panel import RunPanel
 from viewer.gui.scene_widget import SceneWidget
 from viewer.gui.status_line import StatusLine
+from viewer.gui.swipe_handle import SwipeHandle
 from viewer.gui.view_menu import ViewMenu
 from viewer.gui.water_panel import WaterPanel
 from viewer.view_status import ViewStatus
@@ -91,6 +92,8 @@ class MainWindow(QMainWindow):
         self.scene.failed.connect(self._fail)
         self.reference_map = ReferenceMap(self._dispatch, self.scene)
         self.scene.resized.connect(self._place_map)
+        self.swipe_handle = SwipeHandle(self._dispatch, self.scene)
+        self.scene.resized.connect(self.swipe_handle.place)
         self.playback = PlaybackBar(self._dispatch)
         self.playback.stepped.connect(self._step)
         self.edit_panel = EditPanel(self._dispatch)
@@ -145,6 +148,7 @@ class MainWindow(QMainWindow):
             self.run_panel.show_status(status)
             self.depth_plot.show_status(status)
             self.water_panel.show_status(status)
+            self.swipe_handle.show_status(status)
             self.connection_panel.show_status(status)
             self.layers_panel.show_status(status)
             self.view_menu.show_status(status)

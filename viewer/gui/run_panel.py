@@ -71,7 +71,13 @@ class RunPanel(QWidget):
         self.compare = QComboBox()
         self.compare.setAccessibleName("Compare with")
         self.compare.setToolTip("Colour the picture by how much deeper or shallower the water is than there")
-        self.compare.activated.connect(lambda row: dispatch(CompareWith(self.compare.itemData(row))))
+        self.compare.activated.connect(lambda _row: self._compare())
+        self.compare_mode = QComboBox()
+        self.compare_mode.setAccessibleName("Compare by")
+        self.compare_mode.setToolTip("Colour the difference, or show the other run right of a divider")
+        self.compare_mode.addItem("by difference", "difference")
+        self.compare_mode.addItem("side by side", "swipe")
+        self.compare_mode.activated.connect(lambda _row: self._compare())
         self._lay_out()
 
     def show_status(self, status: ViewStatus) -> None:
@@ -107,6 +113,12 @@ class RunPanel(QWidget):
                 self.compare.addItem(text, run)
         self.compare.setCurrentIndex(max(0, self.compare.findData(status.compared_run)))
         self.compare.setEnabled(len(choices) > 1)
+        self.compare_mode.setEnabled(len(choices) > 1)
+        if status.compared_run is not None:
+            self.compare_mode.setCurrentIndex(max(0, self.compare_mode.findData(status.compare_mode)))
+
+    def _compare(self) -> None:
+        self._dispatch(CompareWith(self.compare.currentData(), self.compare_mode.currentData()))
 
     def choose_case(self, name: str) -> None:
         """Select the case called `name`, if the service offers it."""
@@ -200,6 +212,7 @@ class RunPanel(QWidget):
         layout.addLayout(control)
         comparing = QFormLayout()
         comparing.addRow("Compare with", self.compare)
+        comparing.addRow("", self.compare_mode)
         layout.addLayout(comparing)
 
 

@@ -2,6 +2,7 @@
 
 from viewer.render.context import check_context, create_headless_context
 from viewer.render.frame_inputs import (
+    Beside,
     CellField,
     Colouring,
     DepthDifference,
@@ -19,6 +20,7 @@ from viewer.render.picking import Unprojection, march_ray
 from viewer.render.renderer import Renderer
 
 __all__ = [
+    "Beside",
     "CellField",
     "Colouring",
     "DepthDifference",

@@ -13,6 +13,7 @@ from viewer.lod.block_tiling import Border
 from viewer.units import METRIC, Units
 from viewer.world.camera import Camera
 from viewer.world.flow_arrows import FlowField
+from viewer.world.heightfield import Heightfield
 from viewer.world.water_scales import ClassScale, WaterColour
 
 __all__ = [
@@ -212,6 +213,21 @@ class RenderOptions:
     """Colour behind everything where no sky is drawn."""
 
 
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """Another run's picture right of a divider, with the same camera and options."""
+
+    at: float
+    """Where the divider stands, as a share of the picture's width from the left."""
+    heightfield: Heightfield
+    """Its ground."""
+    inputs: FrameInputs
+    """What its picture depends on; the text on the picture is that of the run to the left."""
+    left: str
+    """The run to the left in words."""
+    right: str
+
+
 @dataclass(frozen=True)
 class FrameInputs:
     """One picture."""
@@ -227,6 +243,8 @@ class FrameInputs:
     """Colours the water in classes; None leaves it natural."""
     flow: FlowField | None = None
     """Arrows on the water; None draws none."""
+    beside: Beside | None = None
+    """Another run right of a divider; None gives this one the whole picture."""
     is_outdated: bool = False
     """The flood may have gone on unseen, say since the service is gone: the scene is drawn in grey."""
 

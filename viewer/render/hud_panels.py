@@ -14,6 +14,7 @@ __all__ = [
     "banner_panel",
     "depth_ramp_panel",
     "difference_panel",
+    "divider_panel",
     "flow_panel",
     "legend_panel",
     "natural_water_colour",
@@ -143,6 +144,11 @@ def difference_panel(other: str, scale: float) -> Image.Image:
         draw.rectangle((margin, y + 2, margin + box, y + row - 3), fill=(*colour, 255))
         draw.text((margin + box + gap, y), text, font=_font(size), fill=_SOFT_INK)
     return image
+
+
+def divider_panel(width: int, height: int) -> Image.Image:
+    """The line between two runs."""
+    return Image.new("RGBA", (width, height), (255, 255, 255, 255))
 
 
 def flow_panel(speed: str, length: float, scale: float) -> Image.Image:

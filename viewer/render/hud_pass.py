@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 from viewer.render import hud_panels
-from viewer.render.frame_inputs import FrameInputs, HudText
+from viewer.render.frame_inputs import Beside, FrameInputs, HudText
 from viewer.render.shader_library import build_program, set_uniforms
 from viewer.world.camera import Camera
 from viewer.world.flow_arrows import LONGEST_PX, arrow_speed
@@ -52,6 +52,7 @@ class HudPass:
         scale = min(max(min(size[1] / 720.0, size[0] / 1280.0), 0.6), 3.0)
         edge = round(_EDGE * scale)
         draws = self._draw_corners(hud, inputs, size, scale, edge)
+        draws += self._draw_divider(inputs.beside, size, scale)
         top = edge
         banners = (
             ("notice", hud.notice, True),
@@ -116,6 +117,20 @@ class HudPass:
             self._blit(texture, size, size[0] - texture.width - edge, size[1] - texture.height - edge)
             draws += 1
         return draws
+
+    def _draw_divider(self, beside: Beside | None, size: tuple[int, int], scale: float) -> int:
+        """The line between two runs, with their names on either side of it."""
+        if beside is None:
+            return 0
+        at, thick = round(beside.at * size[0]), max(2, round(3 * scale))
+        line = self._panel("divider", (thick, size[1]), lambda: hud_panels.divider_panel(thick, size[1]))
+        self._blit(line, size, at - thick // 2, 0)
+        gap, top = round(8 * scale), round(140 * scale)
+        for name, text in (("left", beside.left), ("right", beside.right)):
+            make = partial(hud_panels.banner_panel, text, 0.8 * scale, False)
+            label = self._panel(name, (text, scale), make)
+            self._blit(label, size, at - gap - label.width if name == "left" else at + gap, top)
+        return 3
 
     def _beside_text(
         self, banner: moderngl.Texture, size: tuple[int, int], edge: int, top: int

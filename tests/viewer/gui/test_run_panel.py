@@ -92,10 +92,14 @@ def test_pause_resume_and_stop_fit_the_state_of_the_run(panel: RunPanel, record:
 def test_the_other_runs_of_the_case_can_be_compared_with(panel: RunPanel, record: Recorder) -> None:
     texts = [panel.compare.itemText(row) for row in range(panel.compare.count())]
     assert texts == ["nothing", "jacksboro from the start (r1)"]
+    panel.compare.setCurrentIndex(1)
     panel.compare.activated.emit(1)
+    panel.compare_mode.setCurrentIndex(1)
+    panel.compare_mode.activated.emit(1)
+    panel.compare.setCurrentIndex(0)
     panel.compare.activated.emit(0)
 
-    assert record.commands == [CompareWith("r1"), CompareWith(None)]
+    assert record.commands == [CompareWith("r1"), CompareWith("r1", "swipe"), CompareWith(None, "swipe")]
     panel.show_status(dataclasses.replace(STATUS, compared_run="r1"))
     assert panel.compare.currentIndex() == 1
     panel.show_status(dataclasses.replace(STATUS, runs=(ROOT,), shown_run="r1"))
