@@ -110,7 +110,7 @@ def kill_again_and_again(
                     tally.finished_runs += 1
                     with ServiceClient(service) as client:
                         _check(client, watched, tally)
-                        stored = _stored_frames(client, watched.run)
+                        stored = stored_frames(client, watched.run)
                     pairs = [(truth[k], stored.get(k)) for k in truth]
                     tally.different_frames += sum(ours != theirs for ours, theirs in pairs)
                     watched = None
@@ -131,10 +131,10 @@ def _undisturbed(service: ServiceProcess, case: str) -> dict[int, bytes]:
         run = _start(client, case).run
         client.do(protocol.Subscribe, run=run, credit=8)
         client.frame(run, DURATION_FRAMES)
-        return _stored_frames(client, run)
+        return stored_frames(client, run)
 
 
-def _stored_frames(client: ServiceClient, run: str) -> dict[int, bytes]:
+def stored_frames(client: ServiceClient, run: str) -> dict[int, bytes]:
     """Frames from the store without what names the run, as the bytes that count."""
     frames: dict[int, bytes] = {}
     count = next(info for info in client.ask(protocol.ListRuns).runs if info.run == run).frame_count
@@ -162,7 +162,7 @@ def _check(client: ServiceClient, watched: Watched, tally: Tally) -> None:
     edits = client.first(protocol.EditsChanged, lambda event: event.run == watched.run)
     kept = {edit.id for edit in edits.edits}
     tally.lost_edits += sum(name not in kept for name in watched.edits)
-    stored = _stored_frames(client, watched.run)
+    stored = stored_frames(client, watched.run)
     tally.lost_frames += sum(stored.get(index) != frame for index, frame in watched.frames.items())
 
 

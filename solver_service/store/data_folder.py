@@ -100,7 +100,7 @@ class DataFolder:
         """Take the folder for this process until `unlock` or the end of the process.
 
         Raises:
-            StoreError: another service holds it.
+            StoreError: another service holds it, or it cannot be written.
         """
         self._lock = _FileLock(self.root / "service.lock")
 
@@ -144,7 +144,12 @@ class _FileLock:
     """An advisory lock that the operating system releases when the process ends, however it ends."""
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("a+")
+        try:
+            self._file = path.open("a+")
+        except OSError as error:
+            raise StoreError(
+                f"data folder {path.parent} cannot be used: {error.strerror or error}"
+            ) from error
         try:
             self._acquire()
         except OSError as error:

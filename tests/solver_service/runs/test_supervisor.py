@@ -36,16 +36,22 @@ def service(tmp_path_factory: pytest.TempPathFactory, case: str) -> Iterator[Ser
     service.close()
 
 
-def start(service: Service, paused: bool = False) -> Run:
-    run = service.call(service.registry.control.start("dam-break", DURATION, paused=paused))
+def start(service: Service, paused: bool = False, duration: float = DURATION) -> Run:
+    run = service.call(service.registry.control.start("dam-break", duration, paused=paused))
     service.wait(lambda: run.frame_count > 0)
     return run
 
 
-def kill_worker(run: Run) -> None:
+def kill_worker(run: Run, number: int = signal.SIGKILL) -> None:
     assert run.worker is not None
     assert run.worker.pid is not None
-    os.kill(run.worker.pid, signal.SIGKILL)
+    os.kill(run.worker.pid, number)
+
+
+def packed_frames(service: Service, run: Run, count: int) -> list[bytes]:
+    """The first frames of a run without its name."""
+    packed = [service.call(service.registry.read_frame(frame)) for frame in run.frames[:count]]
+    return [frame.partition(run.run.encode())[2] for frame in packed]
 
 
 def test_a_death_is_noticed_and_told_within_a_tenth_of_a_second(service: Service) -> None:
@@ -112,3 +118,24 @@ def test_a_worker_that_gets_no_memory_ends_in_words_and_another_goes_on_while_ne
         assert (
             ours_packed.partition(run.run.encode())[2] == theirs_packed.partition(neighbour.run.encode())[2]
         )
+
+
+def test_a_crash_a_kill_and_a_blow_up_beside_a_run_leave_its_frames_unchanged(service: Service) -> None:
+    control = service.registry.control
+    neighbour = service.call(control.start("dam-break", 1e5))
+    crashed, killed = start(service, duration=1e5), start(service, duration=1e5)
+    kill_worker(crashed, signal.SIGSEGV)
+    kill_worker(killed, signal.SIGKILL)
+    wild = service.call(control.start("wild"))
+    service.wait_for_status(wild, RunStatus.FAILED)
+    service.wait(lambda: bool(service.notices(crashed.run)) and bool(service.notices(killed.run)))
+    assert "crashed (SIGSEGV)" in service.notices(crashed.run)[0]
+    assert "killed (SIGKILL)" in service.notices(killed.run)[0]
+    for run in (neighbour, crashed, killed):
+        service.call(control.stop(run.run))
+    service.call(service.registry.supervisor.settle(neighbour))
+    assert service.statuses(neighbour.run) == ["starting", "running", "stopped"], "it noticed nothing"
+    count = neighbour.frame_count
+    truth = service.call(control.start("dam-break", 5.0 * (count - 1)))
+    service.wait_for_status(truth, RunStatus.FINISHED)
+    assert packed_frames(service, neighbour, count) == packed_frames(service, truth, count)

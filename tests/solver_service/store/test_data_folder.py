@@ -44,6 +44,13 @@ def test_a_folder_that_cannot_be_made_is_told_in_a_sentence(tmp_path: Path) -> N
         DataFolder(tmp_path / "file")
 
 
+def test_a_folder_in_which_no_lock_can_be_made_is_told_in_a_sentence(tmp_path: Path) -> None:
+    folder = DataFolder(tmp_path / "data")
+    (folder.root / "service.lock").mkdir()
+    with pytest.raises(StoreError, match="data cannot be used: Is a directory"):
+        folder.lock()
+
+
 def test_a_bed_is_kept_without_loss(tmp_path: Path, rng: np.random.Generator) -> None:
     folder = DataFolder(tmp_path)
     z_b = rng.random((20, 30)).astype(np.float32)

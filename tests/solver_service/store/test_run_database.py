@@ -78,6 +78,20 @@ def test_active_runs_are_interrupted_and_the_move_is_logged(tmp_path: Path) -> N
     database.close()
 
 
+def test_the_log_of_a_run_keeps_its_order_when_the_clock_jumps(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    database = opened(tmp_path)
+    database.insert_run(RUN)
+    for day, status in ((9, "running"), (2, "paused"), (30, "starting"), (1, "running")):
+        monkeypatch.setattr("time.time", lambda day=day: 86400.0 * day)
+        database.set_status("r1", status)
+    events = database.run_events("r1")[-4:]
+    assert [event.wall_time for event in events] == [86400.0 * day for day in (9, 2, 30, 1)]
+    assert [run.status for run in database.runs()] == ["running"]
+    database.close()
+
+
 def test_a_store_of_another_schema_is_refused(tmp_path: Path) -> None:
     database = opened(tmp_path)
     database._db.execute("PRAGMA user_version = 99")
