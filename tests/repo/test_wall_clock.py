@@ -1,4 +1,4 @@
-"""A wall clock jumps: nothing that decides anything may read it. Stamps for people and expiry of tokens may."""
+"""A wall clock jumps: nothing that decides anything may read it. Stamps and expiry of tokens may."""
 
 import re
 from pathlib import Path
