@@ -9,6 +9,7 @@ from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QFormLayout,
     QHBoxLayout,
+    QLabel,
     QPushButton,
     QWidget,
 )
@@ -20,6 +21,8 @@ __all__ = ["Choice", "EditForm"]
 
 _LIMITS = {"width": (0.5, 5000.0), "magnitude": (0.1, 500.0), "level": (-5000.0, 9000.0)}
 """Least and most that the fields take [m]."""
+_FIELD_WIDTH = 78
+"""Least width of a field on the screen [pixels]."""
 _CRESTS: dict[str, dict[str, object]] = {
     "modulate": {"type": "modulate", "at_level": False},
     "even": {"type": "replace", "at_level": False},
@@ -52,28 +55,24 @@ class EditForm(QWidget):
             {
                 "modulate": ("Follow ground", "Modulate: add the magnitude to the ground as it is"),
                 "even": ("Even", "Replace: an even crest or floor above the ground at the drawn points"),
-                "level": ("At level", "Replace: a crest or floor at an absolute elevation"),
+                "level": ("Level", "Replace: a crest or floor at an absolute elevation"),
             },
             lambda name: change(
                 type="modulate" if name == "modulate" else "replace", at_level=name == "level"
             ),
         )
-        self.pick = QPushButton("Take from picture")
+        self.pick = QPushButton("Pick")
         self.pick.setCheckable(True)
+        self.pick.setAccessibleName("Take the level from the picture")
         self.pick.setToolTip("Click on water or ground: its level becomes that of the crest (Esc drops)")
         self.pick.clicked.connect(lambda: pick_level())
-        level = QWidget()
-        row = QHBoxLayout(level)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(self.level_m, 1)
-        row.addWidget(self.pick)
         form = QFormLayout(self)
         form.setContentsMargins(0, 0, 0, 0)
+        form.setVerticalSpacing(4)
         form.addRow("Operation", self.operation)
         form.addRow("Crest", self.crest)
-        form.addRow("Width", self.width_m)
-        form.addRow("Magnitude", self.magnitude_m)
-        form.addRow("Level", level)
+        form.addRow("Width", _side_by_side(self.width_m, QLabel("Magnitude"), self.magnitude_m))
+        form.addRow("Level", _side_by_side(self.level_m, self.pick))
 
     def show_settings(
         self, settings: EditSettings, units: Units, *, is_area: bool = False, picks_level: bool = False
@@ -106,6 +105,7 @@ class EditForm(QWidget):
         box.setAccessibleName(name)
         box.setToolTip(f"{name} of the edit")
         box.setKeyboardTracking(False)
+        box.setMinimumWidth(_FIELD_WIDTH)
         self._fit(box, name.lower())
         box.valueChanged.connect(lambda value: changed(self._units.metres(value)))
         return box
@@ -118,6 +118,15 @@ class EditForm(QWidget):
         box.setRange(self._units.shown(low), self._units.shown(high))
         box.setSuffix(f" {self._units.length}")
         box.blockSignals(blocked)
+
+
+def _side_by_side(*widgets: QWidget) -> QWidget:
+    together = QWidget()
+    row = QHBoxLayout(together)
+    row.setContentsMargins(0, 0, 0, 0)
+    for widget in widgets:
+        row.addWidget(widget, int(isinstance(widget, QDoubleSpinBox)))
+    return together
 
 
 class Choice(QWidget):

@@ -61,19 +61,28 @@ class EditPanel(QWidget):
         self._dispatch = dispatch
         self._status = ViewStatus()
         how = "a click sets a point, a drag draws free-hand; double click or Enter finishes, Esc drops"
-        self.line = self._tool("line", "B", f"Draw a line: {how}", BeginEdit("line"))
+        self.line = self._tool("line", "Draw line", "B", f"Draw a line: {how}", BeginEdit("line"))
         self.area = self._tool(
-            "area", "Shift+B", f"Draw an area: {how}; so does a click on its first point", BeginEdit("area")
+            "area",
+            "Draw area",
+            "Shift+B",
+            f"Draw an area: {how}; so does a click on its first point",
+            BeginEdit("area"),
         )
         self.select = self._tool(
             "select",
+            "Select and move",
             "X",
             "Click an edit to select it, drag it or one of its points to move it",
             BeginSelect(),
         )
-        self.finish = self._action("Finish", None, "Take what is drawn into the list (Enter)", FinishEdit())
-        self.undo = self._action("Undo", QKeySequence.StandardKey.Undo, "Take the last change back", Undo())
-        self.redo = self._action("Redo", "Ctrl+Y", "Make it again", Redo())
+        self.finish = self._action(
+            "Finish edit", None, "Take what is drawn into the list (Enter)", FinishEdit()
+        )
+        self.undo = self._action(
+            "Undo edit", QKeySequence.StandardKey.Undo, "Take the last change back", Undo()
+        )
+        self.redo = self._action("Redo edit", "Ctrl+Y", "Make it again", Redo())
         self.rename = self._asking("Rename ...", "F2", "Give the selected edit a name", self._rename)
         self.delete = self._action("Delete", "Del", "Take the selected edit out of the list", DeleteEdit())
         self.save = self._asking("Save edits ...", None, "Write the list to a GeoJSON file", self._save)
@@ -94,6 +103,7 @@ class EditPanel(QWidget):
         self.note = QLabel("")
         self.note.setObjectName("faint")
         self.note.setWordWrap(True)
+        self.note.setMinimumHeight(2 * self.note.fontMetrics().lineSpacing())  # nothing moves when it is said
         self._lay_out()
 
     def menu_actions(self) -> list[QAction | None]:
@@ -169,11 +179,12 @@ class EditPanel(QWidget):
         if path:
             self._dispatch(LoadEdits(path))
 
-    def _tool(self, name: str, shortcut: str, tip: str, begin: Command) -> QAction:
+    def _tool(self, name: str, text: str, shortcut: str, tip: str, begin: Command) -> QAction:
         def triggered() -> None:
             self._dispatch(CancelEdit() if self._status.edit_tool == name else begin)
 
-        action = self._asking(name.capitalize(), shortcut, f"{tip} ({shortcut})", triggered)
+        action = self._asking(text, shortcut, f"{tip} ({shortcut})", triggered)
+        action.setIconText(name.capitalize())
         action.setCheckable(True)
         return action
 
@@ -190,6 +201,7 @@ class EditPanel(QWidget):
         asked: Callable[[], None],
     ) -> QAction:
         action = QAction(text, self)
+        action.setIconText(text.removesuffix(" edit"))  # on a button among the edits
         action.setToolTip(tip)
         if shortcut is not None:
             action.setShortcut(QKeySequence(shortcut))

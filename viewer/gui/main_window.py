@@ -232,7 +232,8 @@ class MainWindow(QMainWindow):
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        scroll.setMinimumWidth(panel.minimumSizeHint().width())
+        bar = scroll.verticalScrollBar().sizeHint().width()
+        scroll.setMinimumWidth(panel.minimumSizeHint().width() + bar)
         dock.setWidget(scroll)
         self.addDockWidget(area, dock)
         return dock

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QLabel, QStatusBar, QWidget
+from PySide6.QtWidgets import QLabel, QSizePolicy, QStatusBar, QWidget
 
 from viewer.units import METRIC, Units
 from viewer.view_status import PointReadout, ViewStatus, time_text
@@ -41,6 +41,8 @@ class StatusLine(QStatusBar):
         super().__init__(parent)
         self.setSizeGripEnabled(False)
         self.message = self._label("Message", stretch=1)
+        # A long message is cut, with all of it in the tip; the window does not grow for it.
+        self.message.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.point = self._label("Under the pointer")
         self.time = self._label("Model and clock time")
         self.revision = self._label("Revision of the edits")
@@ -53,6 +55,7 @@ class StatusLine(QStatusBar):
     def show_status(self, status: ViewStatus, frames_per_second: float) -> None:
         """Show the state."""
         self.message.setText(status.message)
+        self.message.setToolTip(status.message)
         self.point.setText(readout_text(status.hover, status.units))
         self.time.setText(" ".join(filter(None, (time_text(status.time), status.clock))))
         self.revision.setText(f"edits rev {status.revision}" if status.has_terrain else "")

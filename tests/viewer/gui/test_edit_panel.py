@@ -173,7 +173,12 @@ def test_the_note_says_what_to_do_and_what_a_recalculation_took(panel: EditPanel
 
 def test_every_button_has_a_name_and_a_tip_and_the_menu_has_all_actions(panel: EditPanel) -> None:
     buttons = panel.findChildren(QToolButton)
-    assert {button.accessibleName() for button in buttons} >= {"Line", "Area", "Select", "Undo", "Delete"}
+    assert {button.accessibleName() for button in buttons} >= {
+        "Draw line",
+        "Undo edit",
+        "Delete",
+    }
+    assert {button.text() for button in buttons} >= {"Line", "Area", "Select", "Undo", "Redo"}
     assert all(button.toolTip() for button in buttons)
     actions = {action for action in panel.menu_actions() if action is not None}
     assert {button.defaultAction() for button in buttons} | {panel.recalculate} == actions

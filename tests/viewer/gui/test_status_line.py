@@ -51,3 +51,13 @@ def test_what_is_not_known_is_left_out(qtbot: QtBot) -> None:
 
     assert (line.computation.text(), line.volume.text(), line.rate.text()) == ("", "", "")
     assert (line.revision.text(), line.age.text()) == ("", "")
+
+
+def test_a_long_message_does_not_widen_the_window_and_is_told_whole_in_the_tip(qtbot: QtBot) -> None:
+    line = StatusLine()
+    qtbot.addWidget(line)
+    width = line.minimumSizeHint().width()
+    line.show_status(ViewStatus(message="edits written to " + "a/" * 300), 0.0)
+
+    assert line.minimumSizeHint().width() - width < 400  # the other labels
+    assert line.message.toolTip() == line.message.text()
