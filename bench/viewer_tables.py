@@ -16,7 +16,15 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from bench.viewer_scenes import SIZE, Scene, scenes, wall_of_water
+from bench.viewer_scenes import (
+    FLIGHT_DISTANCE,
+    FLIGHT_PITCH_DEG,
+    PAPER_SHARES,
+    SIZE,
+    Scene,
+    scenes,
+    wall_of_water,
+)
 from viewer.render import (
     FrameInputs,
     FrameStats,
@@ -31,13 +39,21 @@ from viewer.world import Camera
 Raster = npt.NDArray[np.float32]
 
 TAU_PX = 3.0
+BLOCK_SIZES = {"malpasset": (33, 17), "srtm_1026": (33, 17)}
+"""Vertices along a block where a scene is drawn with more than the usual 33."""
 PICTURES = 3
 WATER_RATE = 5.0
 """Waters a second [1/s]."""
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 PLAIN = RenderOptions(
-    tau_px=TAU_PX, cull=False, water_spacing_px=0.0, partial_spacing_px=0.0, show_skirt=False, show_sky=False
+    tau_px=TAU_PX,
+    cull=False,
+    quadtree=True,
+    water_spacing_px=0.0,
+    partial_spacing_px=0.0,
+    show_skirt=False,
+    show_sky=False,
 )
 TESTS: dict[str, tuple[RenderOptions, bool]] = {
     "1. terrain without LOD, no water": (replace(PLAIN, full_mesh=True), False),
@@ -50,6 +66,12 @@ TESTS: dict[str, tuple[RenderOptions, bool]] = {
     "6. terrain with LOD, water in tiles with wet block classification": (PLAIN, True),
 }
 """The paper's tests; 4 and 5 are one here, since tiles of one level are drawn by one call anyway."""
+
+CAMERA = "the whole map from the south, 38 degrees down, 1280 x 720 pixels"
+FLIGHT = (
+    f"round the map on an ellipse of half its size, looking along the way {FLIGHT_PITCH_DEG:g} degrees down,"
+    f" {FLIGHT_DISTANCE:g} of the longer side from the point looked at"
+)
 
 PAPER_TRIANGLES = {
     "Malpasset": (917_885, 96_070, 1_853_726, 1_193_065, 368_862),
@@ -113,7 +135,9 @@ def figures(smoke: bool) -> Iterator[dict[str, object]]:
     ctx = create_headless_context()
     for scene in scenes(smoke):
         easel = Easel(ctx, scene)
-        yield from _six_tests(easel, scene)
+        for block_size in BLOCK_SIZES.get(scene.name, (33,)):
+            yield from _six_tests(easel, scene, block_size)
+            yield from _animated(easel, scene, block_size)
         yield from _coverage(easel, scene)
         yield from _culling(easel, scene)
         easel.close()
@@ -125,14 +149,15 @@ def _pair(key: object, h: Raster) -> WaterPair:
     return WaterPair(frame, frame)
 
 
-def _six_tests(easel: Easel, scene: Scene) -> Iterator[dict[str, object]]:
+def _six_tests(easel: Easel, scene: Scene, block_size: int) -> Iterator[dict[str, object]]:
     camera = scene.camera()
     for which in ("least", "most"):
         h = scene.least if which == "least" else scene.most
         waters: list[WaterPair | None] = [_pair((which, 0), h), _pair((which, 1), h.copy())]
         upload = easel.upload_milliseconds(camera, waters)
         triangles: list[int] = []
-        for number, (name, (options, has_water)) in enumerate(TESTS.items()):
+        for number, (name, (plain, has_water)) in enumerate(TESTS.items()):
+            options = replace(plain, block_size=block_size)
             shown: list[WaterPair | None] = waters[:1] if has_water else [None]
             overall, stats = easel.milliseconds(camera, shown, options)
             terrain, _ = easel.milliseconds(camera, shown, replace(options, show_water=False))
@@ -151,7 +176,10 @@ def _six_tests(easel: Easel, scene: Scene) -> Iterator[dict[str, object]]:
                 "origin": scene.origin,
                 "cells": list(h.shape),
                 "water": which,
+                "block_size": block_size,
+                "camera": CAMERA,
                 "wet_blocks": round(scene.wet_share(h), 4),
+                "blocks_with_water": round(scene.water_share(h), 4),
                 "test": name,
                 "terrain_triangles": stats.terrain_triangles,
                 "water_triangles": stats.water_triangles,
@@ -163,8 +191,26 @@ def _six_tests(easel: Easel, scene: Scene) -> Iterator[dict[str, object]]:
                 "paper_triangles": None if paper is None else paper[number],
                 "paper_overall_ms": None if paper is None else PAPER_MILLISECONDS[scene.paper_name][number],
             }
-        yield _cut("terrain_cut_by_lod", scene, triangles[0], triangles[1], water=which)
-        yield _cut("cut_by_wet_block_classification", scene, triangles[3], triangles[4], water=which)
+        about: dict[str, object] = {"block_size": block_size, "water": which}
+        yield _cut("terrain_cut_by_lod", scene, triangles[0], triangles[1], **about)
+        yield _cut("cut_by_wet_block_classification", scene, triangles[3], triangles[4], **about)
+
+
+def _animated(easel: Easel, scene: Scene, block_size: int) -> Iterator[dict[str, object]]:
+    """The cut by wet block classification while the water moves on.
+
+    Over all its times, and over those at which no more blocks hold water than in the paper.
+    """
+    most = PAPER_SHARES.get(scene.paper_name, (0.0, 1.0))[1]
+    for water, highest in (("all times", 1.0), ("times with at most the paper's share", most)):
+        waters = [h for h in scene.waters if scene.water_share(h) <= highest]
+        counts = {}
+        for classify in (False, True):
+            options = replace(PLAIN, block_size=block_size, classify_water=classify)
+            stats = [easel.draw(scene.camera(), _pair(("at", id(h)), h), options) for h in waters]
+            counts[classify] = sum(one.terrain_triangles + one.water_triangles for one in stats)
+        about: dict[str, object] = {"block_size": block_size, "water": water, "times": len(waters)}
+        yield _cut("cut_by_wet_block_classification", scene, counts[False], counts[True], **about)
 
 
 def _coverage(easel: Easel, scene: Scene) -> Iterator[dict[str, object]]:
@@ -190,6 +236,7 @@ def _coverage(easel: Easel, scene: Scene) -> Iterator[dict[str, object]]:
 def _culling(easel: Easel, scene: Scene) -> Iterator[dict[str, object]]:
     water = _pair("flight", scene.most)
     means = {}
+    hidden = []
     for cull in (False, True):
         counts, times = [], []
         for camera in scene.flight():
@@ -197,6 +244,10 @@ def _culling(easel: Easel, scene: Scene) -> Iterator[dict[str, object]]:
             stats = easel.draw(camera, water, replace(PLAIN, cull=cull))
             times.append(1e3 * (time.perf_counter() - begun))
             counts.append(stats.terrain_triangles + stats.water_triangles)
+            if cull:
+                hidden.append(
+                    stats.culled_blocks / (stats.culled_blocks + stats.terrain_blocks + stats.covered_blocks)
+                )
         means[cull] = round(float(np.mean(counts)))
         yield {
             "figure": "triangles_in_flight",
@@ -206,14 +257,16 @@ def _culling(easel: Easel, scene: Scene) -> Iterator[dict[str, object]]:
             "culling": cull,
             "median_ms": round(float(np.median(times)), 1),
         }
-    yield _cut("cut_by_culling", scene, means[False], means[True], water="most")
+    culled = round(100.0 * float(np.mean(hidden)), 1)
+    flight = {"water": "most", "blocks_culled": culled, "camera": FLIGHT}
+    yield _cut("cut_by_culling", scene, means[False], means[True], **flight)
 
 
-def _cut(figure: str, scene: Scene, before: int, after: int, water: str) -> dict[str, object]:
+def _cut(figure: str, scene: Scene, before: int, after: int, **about: object) -> dict[str, object]:
     return {
         "figure": figure,
         "value": round(100.0 * (1.0 - after / before), 1),
         "unit": "%",
         "scene": scene.name,
-        "water": water,
+        **about,
     }
