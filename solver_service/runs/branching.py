@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from dataclasses import replace
 
 from protocol import RunBranched, RunChanged
@@ -142,5 +143,6 @@ class Branching:
             worker.run = child.run
             return worker
         if worker is not None and held:
-            await asyncio.wait_for(worker.save_state(parent.run, child.branch_index), SAVE_TIMEOUT_S)
+            with suppress(TimeoutError):  # then the other one goes on from an earlier state, to the same bits
+                await asyncio.wait_for(worker.save_state(parent.run, child.branch_index), SAVE_TIMEOUT_S)
         return await self._supervisor.pool.take(child.run, self._catalogue.source(child.case), child.device)

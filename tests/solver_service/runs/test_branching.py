@@ -1,11 +1,16 @@
 import contextlib
 
+import numpy as np
+import pytest
+
+from protocol import BlockLayout, FrameDecoder, peek_frame
 from solver_service.errors import RunError
 from solver_service.runs import Run, RunStatus
-from tests.end_to_end.dam_break import levee
+from tests.end_to_end.dam_break import CELLS, levee
 from tests.solver_service.runs.conftest import Service
 
 DURATION = 400.0
+LAYOUT = BlockLayout(CELLS, CELLS)
 
 
 def start(service: Service) -> Run:
@@ -44,3 +49,24 @@ def test_a_parent_resumed_at_once_on_another_worker_has_every_frame_once(service
             service.wait_for_status(run, RunStatus.FINISHED)
         assert [frame.index for frame in root.frames] == list(range(81))
         assert [frame.index for frame in child.frames] == list(range(3, 81))
+
+
+def test_a_child_beside_its_parent_does_not_depend_on_a_state_that_comes_too_late(
+    service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    registry = service.registry
+    root = start(service)
+    service.wait(lambda: root.frame_count > 6)
+    monkeypatch.setattr("solver_service.runs.branching.SAVE_TIMEOUT_S", 0.0)
+    child = service.call(registry.branching.recalculate(root.run, 5, 0, keep_parent=True))
+    for run in (root, child):
+        service.wait_for_status(run, RunStatus.FINISHED)
+    packed = {
+        run.run: [service.call(registry.read_frame(frame)) for frame in run.frames] for run in (root, child)
+    }
+    water = [
+        {frame.index: decoder.decode(frame).q for frame in map(peek_frame, packed[run.run])}
+        for run, decoder in ((root, FrameDecoder(LAYOUT)), (child, FrameDecoder(LAYOUT)))
+    ]
+    assert list(water[1]) == list(range(5, 81))
+    assert all(np.array_equal(q, water[0][index]) for index, q in water[1].items())
