@@ -79,6 +79,8 @@ class RunReports:
                 run = self._tree.get(report.run)
                 if run.status is RunStatus.STARTING:
                     self.move(run, Move.BEGIN)
+            case Paused() if report.number and worker.holds.get(report.run, 0) > report.number:
+                LOG.debug("run %s goes on already", report.run)
             case Paused():
                 run = self._tree.get(report.run)
                 if run.status in ACTIVE:

@@ -236,11 +236,13 @@ class Paused:
         run: the run.
         message: a sentence, or nothing.
         lacks_room: whether it waits for room on the disk and may go on by itself when there is some.
+        number: number of the Begin that is paused; 0 where it waits whatever was asked since.
     """
 
     run: str
     message: str = ""
     lacks_room: bool = False
+    number: int = 0
 
 
 @dataclass(frozen=True)
