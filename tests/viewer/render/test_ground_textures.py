@@ -1,12 +1,14 @@
 import moderngl
+import msgspec
 import numpy as np
 import pytest
 
+from protocol import EditLine, EditType, Operation
 from viewer.errors import TerrainDataError
 from viewer.render import EditOverlay
 from viewer.render.frame_uniforms import sun_direction
 from viewer.render.ground_textures import GroundTextures
-from viewer.world import Heightfield
+from viewer.world import EditDocument, Heightfield
 
 pytestmark = pytest.mark.gl
 SUN = sun_direction(315.0, 42.0)
@@ -60,6 +62,34 @@ def test_light_is_baked_anew_around_an_edit_as_if_from_the_start(
     assert np.abs(colours(ground) - colours(fresh)).max() <= 1
     ctx.detect_framebuffer(0).use()
     fresh.release()
+
+
+def test_an_edit_that_is_drawn_moved_and_deleted_leaves_no_mark_where_it_was(
+    ctx: moderngl.Context, ground: GroundTextures, hilly: Heightfield
+) -> None:
+    before, bed = colours(ground), hilly.z_b.copy()
+    document = EditDocument(hilly.grid, bed)
+    dx = hilly.grid.dx
+    x, y = hilly.grid.x0 + 60.0 * dx, hilly.grid.y0 + 80.0 * dx
+    drawn = EditLine("a", ((x, y), (x + 40.0 * dx, y)), 4.0 * dx, Operation.raise_, EditType.modulate, 25.0)
+    moved = msgspec.structs.replace(drawn, vertices=((x, y + 90.0 * dx), (x + 40.0 * dx, y + 60.0 * dx)))
+    changed = []
+    for revision, edits in enumerate(([drawn], [moved], []), 1):
+        document.mirror(revision, edits, True, False)
+        preview = document.preview()
+        hilly.set(preview.z_b, preview.dirty)
+        assert ground.follow(SUN, True, EditOverlay(revision, preview.sign)) == preview.dirty
+        assert np.array_equal(heights(ground), preview.z_b)
+        fresh = GroundTextures(ctx, Heightfield(hilly.grid, preview.z_b))
+        fresh.follow(SUN, True, EditOverlay(revision, preview.sign))
+        away = np.abs(colours(ground) - colours(fresh)).max(axis=2)
+        changed.append(float((np.abs(colours(ground) - before).max(axis=2) > 3).mean()))
+        ctx.detect_framebuffer(0).use()
+        fresh.release()
+        assert np.count_nonzero(away > 3) <= 1e-4 * away.size
+    assert changed[0] > 0.005
+    assert changed[1] > 0.005
+    assert changed[2] == 0.0
 
 
 def test_slopes_toward_the_sun_are_brighter(ctx: moderngl.Context, hilly: Heightfield) -> None:

@@ -1,9 +1,11 @@
+import msgspec
 import numpy as np
 
+from protocol import EditLine, EditType, Operation
 from viewer.lod import BlockTiling
 from viewer.render import EditOverlay, FrameInputs
 from viewer.render.terrain_lod import TerrainLod
-from viewer.world import Camera, Heightfield
+from viewer.world import Camera, EditDocument, Heightfield
 
 CAMERA = Camera((0.0, 20.0, 0.0), 900.0, 0.4, 0.7)
 SIZE = (640, 360)
@@ -52,3 +54,31 @@ def test_an_edited_block_keeps_its_ground_under_water(hilly: Heightfield) -> Non
     lod.follow_edits(EditOverlay(1, sign))
     selection = levels(lod, hilly, states)
     assert 1 <= selection.stats.terrain_blocks <= 2
+
+
+def test_an_edit_that_is_drawn_moved_and_deleted_leaves_errors_and_levels_as_they_were(
+    hilly: Heightfield,
+) -> None:
+    tiling = BlockTiling(*hilly.z_b.shape)
+    lod, document = TerrainLod(hilly, tiling), EditDocument(hilly.grid, hilly.z_b.copy())
+    before = levels(lod, hilly).level.copy()
+    dx = hilly.grid.dx
+    x, y = hilly.grid.x0 + 40.0 * dx, hilly.grid.y0 + 40.0 * dx
+    drawn = EditLine("a", ((x, y), (x + 40.0 * dx, y)), 4.0 * dx, Operation.raise_, EditType.modulate, 25.0)
+    moved = msgspec.structs.replace(drawn, vertices=((x, y + 90.0 * dx), (x + 40.0 * dx, y + 60.0 * dx)))
+    for revision, edits in enumerate(([drawn], [moved], []), 1):
+        document.mirror(revision, edits, True, False)
+        preview = document.preview()
+        assert preview.dirty is not None
+        hilly.set(preview.z_b, preview.dirty)
+        lod.refresh(preview.dirty)
+        lod.follow_edits(EditOverlay(revision, preview.sign))
+        fresh = TerrainLod(hilly, tiling)
+
+        assert np.array_equal(lod._table._monotone, fresh._table._monotone)
+        assert np.array_equal(lod._table._charges, fresh._table._charges)
+        level = levels(lod, hilly).level
+        pinned = tiling.reduce(np.logical_or, preview.sign != 0).astype(bool).ravel()
+        assert (level.ravel()[pinned] == 0).all()
+        assert np.count_nonzero(pinned) <= 8
+    assert np.array_equal(level, before)
