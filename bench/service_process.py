@@ -86,15 +86,24 @@ class ServiceProcess:
 
     def get(self, path: str) -> Any:
         """What a REST path answers, from JSON."""
-        request = urllib.request.Request(
-            f"{self.http}{path}", headers={"Authorization": f"Bearer {self.token}"}
-        )
-        with urllib.request.urlopen(request, timeout=TIMEOUT_S) as answer:
-            return json.load(answer)
+        return json.loads(self._read(path))
+
+    def metrics(self) -> dict[str, float]:
+        """The samples of `/metrics` by name and labels."""
+        lines = self._read("/metrics").splitlines()
+        samples = (line.rpartition(" ") for line in lines if line and not line.startswith("#"))
+        return {name: float(value) for name, _, value in samples}
 
     def status(self) -> dict[str, Any]:
         """What the service tells of itself."""
         return dict(self.get("/v1/status"))
+
+    def _read(self, path: str) -> str:
+        request = urllib.request.Request(
+            f"{self.http}{path}", headers={"Authorization": f"Bearer {self.token}"}
+        )
+        with urllib.request.urlopen(request, timeout=TIMEOUT_S) as answer:
+            return str(answer.read(), "utf-8")
 
     def _close(self) -> None:
         try:
