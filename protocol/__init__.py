@@ -21,6 +21,7 @@ from protocol.client_session import (
     ClientEvent,
     ClientSession,
     ImageryReceived,
+    SeriesReceived,
     SessionState,
     TerrainReceived,
 )
@@ -81,6 +82,7 @@ from protocol.messages import (
     FramePart,
     GetChannel,
     GetImagery,
+    GetSeries,
     GetTerrain,
     GridInfo,
     Hello,
@@ -109,6 +111,7 @@ from protocol.messages import (
     RunRemoved,
     RunStatus,
     Seek,
+    Series,
     ServerMessage,
     StartRun,
     StopRun,
@@ -125,6 +128,7 @@ from protocol.messages import (
     Welcome,
     WireLimits,
 )
+from protocol.series_codec import DecodedSeries, decode_series, encode_series, join_series
 from protocol.server_session import ServerSession
 from protocol.terrain_codec import decode_terrain, encode_terrain
 from protocol.version import CAPABILITIES, PROTOCOL_VERSION, SUPPORTED_VERSIONS, negotiate
@@ -157,6 +161,7 @@ __all__ = [
     "Credit",
     "DecodedChannel",
     "DecodedFrame",
+    "DecodedSeries",
     "DeleteEdit",
     "DeleteRun",
     "Edit",
@@ -180,6 +185,7 @@ __all__ = [
     "FramePart",
     "GetChannel",
     "GetImagery",
+    "GetSeries",
     "GetTerrain",
     "GridError",
     "GridGeometry",
@@ -218,6 +224,8 @@ __all__ = [
     "RunStatus",
     "Seek",
     "SequenceError",
+    "Series",
+    "SeriesReceived",
     "ServerMessage",
     "ServerSession",
     "SessionState",
@@ -245,12 +253,15 @@ __all__ = [
     "check_forcing",
     "choose_depth_scale",
     "decode_channel",
+    "decode_series",
     "decode_terrain",
     "depth_error_bound",
     "dequantise_depth",
     "edited_cells",
     "encode_channel",
+    "encode_series",
     "encode_terrain",
+    "join_series",
     "limits",
     "negotiate",
     "operation",

@@ -30,6 +30,7 @@ from protocol.messages import (
     Layer,
     ResumePoint,
     RunList,
+    Series,
     ServerMessage,
     Terrain,
     Welcome,
@@ -76,6 +77,19 @@ class ChannelReceived:
 
 
 @dataclass(frozen=True)
+class SeriesReceived:
+    """Series of gauges and sections, put together from their parts; `decode_series` unpacks them.
+
+    Attributes:
+        id: id of the `get_series` command.
+        series: the packed series.
+    """
+
+    id: int
+    series: Series
+
+
+@dataclass(frozen=True)
 class ImageryReceived:
     """A picture of the terrain, put together from its parts and not unpacked.
 
@@ -92,7 +106,7 @@ class ImageryReceived:
     data: bytes
 
 
-ClientEvent = ServerMessage | TerrainReceived | ChannelReceived | ImageryReceived
+ClientEvent = ServerMessage | TerrainReceived | ChannelReceived | SeriesReceived | ImageryReceived
 
 
 class ClientSession:
@@ -190,8 +204,7 @@ class ClientSession:
             whole = self._imagery_parts.add(identity, message.part, message.parts, message.data)
             return [] if whole is None else [ImageryReceived(message.id, message.run, message.layer, whole)]
         if isinstance(message, ChannelPart):
-            whole = self._channel_parts.add(message.id, message.part, message.parts, message.data)
-            return [] if whole is None else [ChannelReceived(message.id, unpack_channel(whole))]
+            return self._add_channel_part(message)
         return [message]
 
     def close(self) -> dict[int, str]:
@@ -231,6 +244,15 @@ class ClientSession:
         if (frame.run, frame.index) != (part.run, part.index):
             raise InvalidMessage(f"The parts of frame {part.index} hold frame {frame.index}.")
         return [frame]
+
+    def _add_channel_part(self, part: ChannelPart) -> list[ClientEvent]:
+        whole = self._channel_parts.add(part.id, part.part, part.parts, part.data)
+        if whole is None:
+            return []
+        packed = unpack_channel(whole)
+        if isinstance(packed, Series):
+            return [SeriesReceived(part.id, packed)]
+        return [ChannelReceived(part.id, packed)]
 
     def _add_terrain_part(self, part: Terrain) -> list[ClientEvent]:
         identity = (part.id, part.run, part.shape)

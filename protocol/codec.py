@@ -24,7 +24,7 @@ from protocol.limits import (
     OUTBOUND_MAX_BYTES,
     OUTBOUND_MAX_ITEMS,
 )
-from protocol.messages import Channel, ClientMessage, Frame, Message, ServerMessage
+from protocol.messages import Channel, ClientMessage, Frame, Message, Series, ServerMessage
 from protocol.structure import check_structure
 
 
@@ -36,7 +36,7 @@ def operation(message: Message | type[Message]) -> str:
 CLIENT_TYPES: dict[str, type[Message]] = {operation(kind): kind for kind in get_args(ClientMessage)}
 SERVER_TYPES: dict[str, type[Message]] = {operation(kind): kind for kind in get_args(ServerMessage)}
 FRAME_TYPES: dict[str, type[Message]] = {operation(Frame): Frame}
-CHANNEL_TYPES: dict[str, type[Message]] = {operation(Channel): Channel}
+CHANNEL_TYPES: dict[str, type[Message]] = {operation(kind): kind for kind in (Channel, Series)}
 
 
 def pack(message: Message) -> bytes:
@@ -70,9 +70,9 @@ def unpack_frame(data: bytes) -> Frame:
     return frame
 
 
-def unpack_channel(data: bytes) -> Channel:
-    """A packed channel, from a store or put together from parts; raises as `unpack_client` does."""
-    channel: Channel = _unpack(data, CHANNEL_TYPES, MAX_CHANNEL_BYTES, INBOUND_MAX_ITEMS)
+def unpack_channel(data: bytes) -> Channel | Series:
+    """A packed channel or series, from a store or put together from parts; raises as `unpack_client` does."""
+    channel: Channel | Series = _unpack(data, CHANNEL_TYPES, MAX_CHANNEL_BYTES, INBOUND_MAX_ITEMS)
     return channel
 
 

@@ -39,6 +39,15 @@ MAX_BED_CELLS = 1 << 16
 MAX_CHANNEL_BYTES = 8 * MAX_CELLS + (1 << 20)
 """Largest channel of one frame, packed or unpacked."""
 
+MAX_ARRAY_LENGTH = 4096
+"""Most items of an array."""
+
+MAX_SERIES_BYTES = 64 << 20
+"""Most bytes of each kind of numbers in one answer with series; a longer one is asked for in stretches."""
+
+MAX_SERIES_PLACES = MAX_ARRAY_LENGTH
+"""Most gauges, and most sections, of a series."""
+
 MAX_PARTS = MAX_CHANNEL_BYTES // PART_BYTES + 1
 """Largest number of parts of one frame, terrain or channel."""
 
@@ -47,9 +56,6 @@ MAX_DEPTH = 8
 
 MAX_MAP_LENGTH = 64
 """Most entries of a map."""
-
-MAX_ARRAY_LENGTH = 4096
-"""Most items of an array."""
 
 MAX_STRING_BYTES = 8192
 """Longest string."""

@@ -46,6 +46,7 @@ from protocol.messages.runs import (
     StopRun,
     UnpinRun,
 )
+from protocol.messages.series import GetSeries, Series
 from protocol.messages.status import Ack, Error, Notice, Progress, WaterBudget
 from protocol.messages.terrain import GetTerrain, Terrain
 
@@ -60,6 +61,7 @@ ClientMessage = (
     | GetTerrain
     | GetImagery
     | GetChannel
+    | GetSeries
     | Subscribe
     | Unsubscribe
     | Seek
@@ -129,6 +131,7 @@ __all__ = [
     "FramePart",
     "GetChannel",
     "GetImagery",
+    "GetSeries",
     "GetTerrain",
     "GridInfo",
     "Hello",
@@ -157,6 +160,7 @@ __all__ = [
     "RunRemoved",
     "RunStatus",
     "Seek",
+    "Series",
     "ServerMessage",
     "StartRun",
     "StopRun",

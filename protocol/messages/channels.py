@@ -67,10 +67,10 @@ class Channel(Message, frozen=True):
 
 
 class ChannelPart(Message, frozen=True):
-    """One part of a packed channel; the data of all parts in order are the bytes of a `channel`.
+    """One part of a packed channel or series; the data of all parts in order are the bytes of that message.
 
     Attributes:
-        id: id of the `get_channel` command.
+        id: id of the `get_channel` or `get_series` command.
         part: number of this part, from 0.
         parts: number of parts.
         data: bytes of this part.

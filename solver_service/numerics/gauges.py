@@ -123,8 +123,8 @@ class GaugeRecorder:
             self._parts = [np.array(records, np.float32)]
             self._cursor.assign(np.array([len(records)] * 2, np.int32))
 
-    def series(self) -> GaugeSeries:
-        """Everything recorded so far."""
-        records = self.records()
-        times = np.arange(len(records), dtype=np.float64) * self.interval
+    def series(self, first: int = 0) -> GaugeSeries:
+        """Everything recorded so far, from a record number on."""
+        records = self.records()[first:]
+        times = np.arange(first, first + len(records), dtype=np.float64) * self.interval
         return GaugeSeries(times, *(np.ascontiguousarray(records[:, :, k]) for k in range(4)))

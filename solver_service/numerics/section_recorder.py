@@ -144,10 +144,10 @@ class SectionRecorder:
 
     # --- what there is -------------------------------------------------------------------------------
 
-    def series(self) -> SectionSeries:
-        """Everything recorded so far."""
-        records = self.records()
-        times = np.arange(len(records), dtype=np.float64) * self.interval
+    def series(self, first: int = 0) -> SectionSeries:
+        """Everything recorded so far, from a record number on."""
+        records = self.records()[first:]
+        times = np.arange(first, first + len(records), dtype=np.float64) * self.interval
         return SectionSeries(times, *(np.ascontiguousarray(records[:, :, k]) for k in range(3)))
 
     def totals(self) -> tuple[SectionTotals, ...]:

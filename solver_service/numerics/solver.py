@@ -291,17 +291,17 @@ class ShallowWaterSolver:
         """What each culvert and pump of the model does."""
         return self._conduits.states() if self._conduits is not None else ()
 
-    def gauge_series(self) -> GaugeSeries:
-        """What the gauges of the parameters have recorded."""
-        return self._gauges.series()
+    def gauge_series(self, first: int = 0) -> GaugeSeries:
+        """What the gauges of the parameters have recorded, from a record number on."""
+        return self._gauges.series(first)
 
     def unmet_outflow(self) -> dict[str, float]:
         """Volume that each discharge edge was to take out and that was not there [m3]."""
         return self._edges.unmet()
 
-    def section_series(self) -> SectionSeries:
-        """What has passed the sections of the parameters, at the gauge interval."""
-        return self._sections.series()
+    def section_series(self, first: int = 0) -> SectionSeries:
+        """What has passed the sections of the parameters, at the gauge interval; from a record number on."""
+        return self._sections.series(first)
 
     def section_totals(self) -> tuple[SectionTotals, ...]:
         """Volume and peak discharge of each section, from every step."""

@@ -22,14 +22,18 @@ from numpy.typing import NDArray
 from protocol import (
     BlockLayout,
     ChannelName,
+    DecodedSeries,
     Frame,
     FrameEncoder,
     ProtocolError,
     encode_channel,
+    encode_series,
+    pack,
     peek_frame,
 )
 from solver_service.errors import StoreError
 from solver_service.runs.frame_grouping import open_key_frame
+from solver_service.runs.frame_series import SERIES
 from solver_service.runs.worker_messages import FrameStored
 from solver_service.store import DataFolder, FrameReader, FrameWriter, RunDatabase
 
@@ -53,6 +57,7 @@ class QuantisedFrame:
         scale: depth of one unit [m].
         bed: cells that breaches have lowered, as row x ncols + col, rising, and their bed [m].
         channels: the channels that go with it, each with its fields by name, float32 [nrows, ncols].
+        series: the records of gauges and sections that belong to it; None where there are none.
     """
 
     run: str
@@ -64,6 +69,7 @@ class QuantisedFrame:
     scale: float
     bed: tuple[NDArray[np.int64], NDArray[np.float32]] | None = None
     channels: Mapping[ChannelName, Mapping[str, NDArray[np.float32]]] = field(default_factory=dict)
+    series: DecodedSeries | None = None
 
     @property
     def nbytes(self) -> int:
@@ -227,8 +233,10 @@ class FramePublisher:
 
 
 def pack_channels(frame: QuantisedFrame, layout: BlockLayout) -> dict[str, bytes]:
-    """The packed channels of a frame, by name."""
+    """The packed channels and series of a frame, by name."""
     packed: dict[str, bytes] = {}
+    if frame.series is not None:
+        packed[SERIES] = pack(encode_series(frame.series))
     for name, fields in frame.channels.items():
         states = frame.states
         if name == "maxima":  # all that was ever wet

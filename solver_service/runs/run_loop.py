@@ -23,6 +23,7 @@ from solver_service.runs.course import Course, next_index_after
 from solver_service.runs.forced_course import course_of
 from solver_service.runs.frame_grouping import FrameGrouping, grouping_after, open_key_frame
 from solver_service.runs.frame_publisher import FramePublisher, QuantisedFrame
+from solver_service.runs.frame_series import frame_series
 from solver_service.runs.ground_layers import keep_layers
 from solver_service.runs.inbox import Inbox
 from solver_service.runs.state_keeper import StateKeeper
@@ -252,7 +253,10 @@ class RunLoop:
         bed = solver.breached_bed()
         due = due_channels(course.begin.channels, index, leg.first_index, course.begin.last_index)
         channels = {name: computation.channel(name) for name in due}
-        frame = QuantisedFrame(leg.run, index, solver.time, leg.revision, q, states, scale, bed, channels)
+        series = frame_series(computation.case, solver, leg.run, index, course.begin.output_interval)
+        frame = QuantisedFrame(
+            leg.run, index, solver.time, leg.revision, q, states, scale, bed, channels, series
+        )
         self._publisher.publish(frame)
 
     def _keep(self, course: Course, computation: Computation) -> None:

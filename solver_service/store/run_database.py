@@ -233,6 +233,16 @@ class RunDatabase:
             ).fetchall()
         return [ChannelRecord(*row) for row in rows]
 
+    def channel_rows(self, run: str, channel: str, first: int, end: int) -> list[ChannelRecord]:
+        """The channels of a name of the frames of a run from an index up to before another, by index."""
+        with _told(self._path):
+            rows = self._db.execute(
+                f"SELECT {_CHANNEL} FROM channels WHERE run = ? AND channel = ? "
+                'AND "index" >= ? AND "index" < ? ORDER BY "index"',
+                (run, channel, first, end),
+            ).fetchall()
+        return [ChannelRecord(*row) for row in rows]
+
     def newest_channel(self, run: str, index: int, channel: str) -> ChannelRecord | None:
         """The newest channel of a name that belongs to a frame of a run at or before an index, or None."""
         with _told(self._path):

@@ -15,6 +15,7 @@ from protocol import (
     DeleteRun,
     GetChannel,
     GetImagery,
+    GetSeries,
     GetTerrain,
     ListCases,
     ListRuns,
@@ -164,6 +165,12 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
             _refuse_who_does_not_read(client)
             packed = await registry.channels.read(command.run, command.index, command.channel)
             client.tell(Ack(command.id))
+            parts = channel_parts(command.id, packed)
+            client.outbox.put_bulk(packet for part in parts for packet in client.session.send(part))
+        case GetSeries():
+            _refuse_who_does_not_read(client)
+            last, packed = await registry.channels.series(command.run, command.from_index)
+            client.tell(Ack(command.id, {"index": last}))
             parts = channel_parts(command.id, packed)
             client.outbox.put_bulk(packet for part in parts for packet in client.session.send(part))
         case GetTerrain():

@@ -97,6 +97,61 @@ def test_every_frame_is_that_of_the_solver_alone_bit_for_bit(client: ServiceClie
     assert lowered[-1] > 5
 
 
+def series(client: ServiceClient, run: str, from_index: int = 0) -> protocol.DecodedSeries:
+    answer = client.do(protocol.GetSeries, run=run, from_index=from_index)
+    received = client.first(protocol.SeriesReceived).series
+    assert answer["index"] == received.index
+    return protocol.decode_series(received)
+
+
+def test_gauges_and_sections_come_at_full_rate_in_stretches_over_a_branch_too(
+    client: ServiceClient, levee_case: Case
+) -> None:
+    run = start(client)
+    revision = client.do(protocol.AppendEdit, run=run, edit=DIKE)["revision"]
+    child = str(client.do(protocol.Recalculate, run=run, index=BEFORE, revision=revision)["run"])
+    finish(client, child)
+    for name, edit_at in ((run, None), (child, BEFORE)):
+        solver = ShallowWaterSolver(levee_case.model, levee_case.params, "cpu")
+        solver.set_water(levee_case.initial_h)
+        for index in range(LAST + 1):
+            solver.advance_to(index * levee_case.output_interval)
+            if index == edit_at:
+                solver.replace_bed(apply_edits(levee_case.z_b, [DIKE], levee_case.grid).z_b)
+        expected, passed = solver.gauge_series(), solver.section_series()
+        whole, tail = series(client, name), series(client, name, AFTER)
+        assert (whole.run, whole.index) == (name, LAST)
+        np.testing.assert_array_equal(whole.times, expected.times)
+        np.testing.assert_array_equal(whole.gauge_values[..., 0], expected.h)
+        np.testing.assert_array_equal(
+            whole.section_values[..., 0], passed.discharge[:, : len(whole.sections)]
+        )
+        later = expected.times > (AFTER - 1) * levee_case.output_interval
+        np.testing.assert_array_equal(tail.times, expected.times[later])
+        np.testing.assert_array_equal(tail.gauge_values[..., 0], expected.h[later])
+    assert len(expected.times) > 2 * LAST, "more often than frames"
+    assert whole.gauges == tuple(gauge.id for gauge in levee_case.gauges)
+
+
+def test_series_of_frames_that_are_not_computed_yet_are_refused(client: ServiceClient) -> None:
+    run = start(client)
+    with pytest.raises(RuntimeError, match=f"frame {LAST + 1} of run {run} is not computed yet"):
+        client.do(protocol.GetSeries, run=run, from_index=LAST + 1)
+
+
+@pytest.mark.parametrize("channel", ["velocity", "maxima"])
+def test_channels_come_over_the_wire_as_they_are_asked_for(
+    client: ServiceClient, levee_case: Case, channel: protocol.ChannelName
+) -> None:
+    run = start(client)
+    client.do(protocol.GetChannel, run=run, index=AFTER, channel=channel)
+    received = client.first(protocol.ChannelReceived).channel
+    decoded = protocol.decode_channel(BlockLayout(*levee_case.grid.shape), received)
+    assert decoded.channel == channel
+    assert tuple(decoded.fields) == protocol.CHANNEL_FIELDS[channel]
+    assert max(np.abs(field[np.isfinite(field)]).max() for field in decoded.fields.values()) > 0.5
+
+
 @pytest.mark.parametrize("index", [BEFORE, AFTER])
 def test_a_branch_before_or_in_the_breach_is_a_run_from_scratch_with_the_edit_then_and_undone_is_the_parent(
     client: ServiceClient, levee_case: Case, index: int

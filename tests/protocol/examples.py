@@ -122,6 +122,7 @@ CLIENT_EXAMPLES: dict[str, Message] = {
     "get_terrain": p.GetTerrain(7, "r-1"),
     "get_imagery": p.GetImagery(30, "r-1"),
     "get_imagery-walls": p.GetImagery(31, "r-1", "walls"),
+    "get_series": p.GetSeries(31, "r-1", 12),
     "get_channel": p.GetChannel(29, "r-1", 33, "velocity"),
     "start_run-channels": p.StartRun(30, "jacksboro", channels=("maxima",)),
     "subscribe": p.Subscribe(8, "r-1", 0, "live", 2),

@@ -204,6 +204,16 @@ def test_a_picture_comes_whole_from_its_parts(rng: np.random.Generator) -> None:
         connection.tell(msgspec.structs.replace(parts[1], layer="walls"))
 
 
+def test_series_come_whole_from_the_same_parts() -> None:
+    connection = connect()
+    command = p.GetSeries(connection.client.next_id(), "r")
+    connection.ask(command)
+    connection.tell(p.Ack(command.id, {"index": 3}))
+    series = p.Series("r", 3, bytes(8 * 40000), (), b"", (), b"")
+    (received,) = [e for part in p.channel_parts(command.id, p.pack(series)) for e in connection.tell(part)]
+    assert received == p.SeriesReceived(command.id, series)
+
+
 def test_parts_that_hold_no_channel_are_refused() -> None:
     for data in (p.pack(p.Ack(1)), b"\xc1", b""):
         with pytest.raises(p.ProtocolError):

@@ -122,6 +122,11 @@ def test_a_frame_that_is_not_there_has_no_channel(service: Service, run: Run) ->
         service.call(service.registry.channels.read("nobody", 0, "velocity"))
 
 
+def test_a_case_without_gauges_and_sections_has_no_series(service: Service, run: Run) -> None:
+    with pytest.raises(RunError, match="no gauge and no section"):
+        service.call(service.registry.channels.series(run.run, 0))
+
+
 def test_a_channel_that_was_forgotten_is_told(service: Service, run: Run) -> None:
     database = service.registry._store
     row = service.call(database.call(lambda rows: rows.newest_channel(run.run, 2, "velocity")))

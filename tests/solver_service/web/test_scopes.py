@@ -17,7 +17,7 @@ def test_every_command_of_the_protocol_has_a_scope_and_nothing_else_has() -> Non
 
 def test_a_viewer_can_change_nothing_and_only_an_operator_can_forget_a_run() -> None:
     looks = {kind.__name__ for kind, scope in COMMAND_SCOPES.items() if scope == Scope.VIEWER}
-    asks = {"ListCases", "ListRuns", "GetTerrain", "GetChannel", "GetImagery"}
+    asks = {"ListCases", "ListRuns", "GetTerrain", "GetChannel", "GetSeries", "GetImagery"}
     assert looks == asks | {"Subscribe", "Unsubscribe", "Seek"}
     keeps = {kind.__name__ for kind, scope in COMMAND_SCOPES.items() if scope == Scope.OPERATOR}
     assert keeps == {"PinRun", "UnpinRun", "DeleteRun"}
