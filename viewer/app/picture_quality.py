@@ -27,14 +27,19 @@ def is_software(context: moderngl.Context) -> bool:
     return any(part in name for part in _SOFTWARE_RENDERERS)
 
 
-def interactive(options: RenderOptions) -> RenderOptions:
-    """Options for a window on a software renderer: about half the cost, a little less sharp."""
+def interactive(options: RenderOptions, scale: float = SOFTWARE_SCALE) -> RenderOptions:
+    """Options for a window on a software renderer: about half the cost, a little less sharp.
+
+    Args:
+        options: what the user chose.
+        scale: pixels of the scene for each pixel of the picture, at most.
+    """
     return dataclasses.replace(
         options,
         tau_px=max(options.tau_px, SOFTWARE_TAU_PX),
         water_spacing_px=max(options.water_spacing_px, SOFTWARE_SPACING_PX),
         partial_spacing_px=max(options.partial_spacing_px, SOFTWARE_SPACING_PX),
-        render_scale=min(options.render_scale, SOFTWARE_SCALE),
+        render_scale=min(options.render_scale, scale),
     )
 
 

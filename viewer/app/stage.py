@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from viewer.app.picture_file import picture_size, save_png
-from viewer.app.picture_quality import interactive, is_software, still
+from viewer.app.picture_pace import PicturePace
+from viewer.app.picture_quality import SOFTWARE_SCALE, interactive, is_software, still
 from viewer.app.picture_text import only_warnings
 from viewer.commands import SavePicture
 from viewer.render import FrameInputs, FrameStats, Renderer, RenderOptions, check_context
@@ -53,6 +54,7 @@ class Stage:
     Attributes:
         stats: what the last picture cost, None before the first.
         pictures: number of pictures drawn with a terrain.
+        pace: how fine the scene is drawn in a window where OpenGL runs on the processor.
     """
 
     def __init__(
@@ -65,6 +67,8 @@ class Stage:
         self._other: Renderer | None = None
         self._other_ground: Heightfield | None = None
         self._divider: float | None = None
+        self.pace = PicturePace(SOFTWARE_SCALE)
+        self._clock: moderngl.Query | None = None
         self._ground: tuple[Heightfield, int] | None = None
         self.stats: FrameStats | None = None
         self.pictures = 0
@@ -83,10 +87,25 @@ class Stage:
         """
         self._context = check_context(self._make_context())
 
+    @property
+    def render_scale(self) -> float:
+        """Pixels of the scene for each pixel of a picture in the window, along one side."""
+        return self.pace.scale if is_software(self.context) else 1.0
+
     def paint(self, framebuffer: int, width: int, height: int) -> None:
         """Draw the scene of a window into framebuffer object number `framebuffer`."""
-        quality = interactive if is_software(self.context) else None
-        self.paint_to(self.context.detect_framebuffer(framebuffer), (width, height), quality)
+        target, size = self.context.detect_framebuffer(framebuffer), (width, height)
+        if not is_software(self.context):
+            self.paint_to(target, size)
+            return
+        if self._clock is None:
+            self._clock = self.context.query(time=True)
+        elif self.stats is not None:
+            # What the last picture took: it is done by now, and nobody waits for the answer.
+            self.pace.note(self._clock.elapsed / 1e6)
+        scale = self.pace.scale
+        with self._clock:
+            self.paint_to(target, size, lambda options: interactive(options, scale))
 
     def paint_to(
         self,
@@ -143,6 +162,7 @@ class Stage:
         self._close_other()
         self._renderer = None
         self._ground = None
+        self._clock = None
         self._context = None
 
     def _draw(self, target: moderngl.Framebuffer, size: tuple[int, int], inputs: FrameInputs) -> FrameStats:

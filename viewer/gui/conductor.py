@@ -43,6 +43,10 @@ class Painter(Protocol):
             ContextError: it is not good enough.
         """
 
+    @property
+    def render_scale(self) -> float:
+        """Pixels of the scene for each pixel of the picture, along one side."""
+
     def paint(self, framebuffer: int, width: int, height: int) -> None:
         """Draw the scene into framebuffer object `framebuffer` of that many pixels."""
 

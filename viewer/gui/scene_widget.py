@@ -86,6 +86,11 @@ class SceneWidget(QOpenGLWidget):
         self.frames_per_second = 0.0
         self.pictures = 0
 
+    @property
+    def render_scale(self) -> float:
+        """Pixels of the scene for each pixel of the picture, along one side."""
+        return self._painter.render_scale if self._is_open else 1.0
+
     def initializeGL(self) -> None:
         """Hand the new context to the painter."""
         try:

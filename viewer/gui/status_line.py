@@ -52,8 +52,14 @@ class StatusLine(QStatusBar):
         self.age = self._label("Age of the data")
         self.connection = self._label("Connection")
 
-    def show_status(self, status: ViewStatus, frames_per_second: float) -> None:
-        """Show the state."""
+    def show_status(self, status: ViewStatus, frames_per_second: float, render_scale: float = 1.0) -> None:
+        """Show the state.
+
+        Args:
+            status: the state.
+            frames_per_second: pictures a second.
+            render_scale: pixels of the scene for each pixel of the picture, along one side.
+        """
         self.message.setText(status.message)
         self.message.setToolTip(status.message)
         self.point.setText(readout_text(status.hover, status.units))
@@ -64,7 +70,9 @@ class StatusLine(QStatusBar):
         self.computation.setText("" if speed is None else f"{speed:.0f} x real time")
         error = status.volume_error_relative
         self.volume.setText("" if error is None else f"volume error {error:.1e}")
-        self.rate.setText(f"{frames_per_second:.0f} fps" if frames_per_second > 0.0 else "")
+        sharpness = f" at {100.0 * render_scale:.0f} %" if render_scale < 1.0 else ""
+        self.rate.setText(f"{frames_per_second:.0f} fps{sharpness}" if frames_per_second > 0.0 else "")
+        self.rate.setToolTip("Pictures a second" + (", and how fine the scene is drawn" if sharpness else ""))
         self.connection.setText(status.connection)
 
     def _label(self, name: str, stretch: int = 0) -> QLabel:

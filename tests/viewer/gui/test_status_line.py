@@ -42,6 +42,8 @@ def test_the_line_says_how_far_the_numbers_can_be_trusted(qtbot: QtBot) -> None:
     assert line.computation.text() == "43 x real time"
     assert line.volume.text() == "volume error 2.9e-08"
     assert line.rate.text() == "25 fps"
+    line.show_status(status, 11.2, 0.65)
+    assert line.rate.text() == "11 fps at 65 %"
 
 
 def test_what_is_not_known_is_left_out(qtbot: QtBot) -> None:
