@@ -11,6 +11,7 @@ __all__ = [
     "CaseRow",
     "EditRow",
     "EditSettings",
+    "ForcingRow",
     "LegendRow",
     "PointReadout",
     "PresenterRow",
@@ -70,6 +71,11 @@ class RunRow:
     Attributes:
         branch_time: simulation time where it left its parent [s]; None for a run of its own.
         computed_until: time of its newest frame [s].
+        label: the name that people gave it.
+        pinned: whether it is kept whatever the budget of the store.
+        moves: what its status allows now.
+        controller: session and program of who controls it, as far as told; empty for nobody.
+        asker: session that asked for its control; empty for nobody.
     """
 
     run: str
@@ -81,6 +87,41 @@ class RunRow:
     computed_until: float
     duration: float
     device: str
+    label: str = ""
+    pinned: bool = False
+    moves: tuple[str, ...] = ()
+    controller: tuple[str, str] = ("", "")
+    asker: str = ""
+
+
+@dataclass(frozen=True)
+class ForcingRow:
+    """Something that drives the flood of the shown run from outside.
+
+    Attributes:
+        kind: "source", "discharge", "stage", "rain" or "breach".
+        unit: unit of its values.
+        case_text: what the case says, in words.
+        factor: what its values are multiplied by.
+        offset: what is added to a level [m].
+        series_text: the series that takes the place of the case's, in words; empty for the case's.
+        start: when a breach begins [s], "never", or "case".
+        case_start: when the case lets a breach begin, at the earliest [s].
+        is_changed: whether it differs from the case.
+        is_pending: whether the shown run was computed with something else.
+    """
+
+    id: str
+    kind: str
+    unit: str
+    case_text: str
+    factor: float = 1.0
+    offset: float = 0.0
+    series_text: str = ""
+    start: float | str = "case"
+    case_start: float = 0.0
+    is_changed: bool = False
+    is_pending: bool = False
 
 
 @dataclass(frozen=True)
@@ -207,6 +248,7 @@ class ViewStatus:
     cases: tuple[CaseRow, ...] = ()
     runs: tuple[RunRow, ...] = ()
     shown_run: str | None = None
+    forcing: tuple[ForcingRow, ...] = ()
     compared_run: str | None = None
     compare_mode: str = "difference"
     swipe_at: float | None = None

@@ -75,9 +75,21 @@ def channel(run: str, index: int, name: protocol.ChannelName) -> bytes:
     return protocol.encode_channel(layout, run, index, index * INTERVAL, name, fields, states)
 
 
+ITEMS = (
+    protocol.ForcingItem(
+        "spring", "source", "m3/s", 0.0, 100.0, protocol.ForcingSeries((0.0, 60.0), (2.0, 5.0))
+    ),
+    protocol.ForcingItem("sea", "stage", "m", -10.0, 10.0, protocol.ForcingSeries((0.0,), (1.5,))),
+    protocol.ForcingItem("rain", "rain", "mm/h", 0.0, 1000.0),
+    protocol.ForcingItem("dam", "breach", "s", start_time=120.0),
+)
+
+
 @dataclass
 class TinyRun:
     info: protocol.RunInfo
+    forcing: tuple[protocol.ForcingChange, ...] = ()
+    applied: tuple[protocol.ForcingChange, ...] = ()
     edits: tuple[protocol.Edit, ...] = ()
     log: protocol.EditLog = field(default_factory=protocol.EditLog)
     frames: dict[int, bytes] = field(default_factory=dict)
@@ -151,6 +163,8 @@ class TinyService:
             if parent is not None:
                 made.edits = parent.log.edits
                 made.log = protocol.EditLog(parent.log.edits, parent.log.revision)
+                made.forcing = made.applied = parent.forcing
+                made.info = msgspec.structs.replace(info, forcing_revision=parent.info.forcing_revision)
             encoder = protocol.FrameEncoder(GRID)
             for index in range(branch_index, FRAMES):
                 water = flood(index, made.edits, branch_index)
@@ -226,6 +240,7 @@ class TinyService:
                             protocol.Error(message.id, "unknown_case", f"Case {message.case!r} is unknown.")
                         ]
                     run = self.add_run()
+                    run.forcing = run.applied = message.forcing
                     return [protocol.Ack(message.id, {"run": run.info.run}), protocol.RunChanged(run.info)]
                 case protocol.GetChannel():
                     return self._channel(message)
@@ -243,6 +258,15 @@ class TinyService:
                     return self._edit(message)
                 case protocol.Recalculate():
                     return self._recalculate(session, message)
+                case protocol.ChangeForcing():
+                    return self._force(message)
+                case protocol.Subscribe() if message.run in self.runs:
+                    return [protocol.Ack(message.id), self._forcing(self.runs[message.run])]
+                case protocol.TakeControl() | protocol.ReleaseControl():
+                    holder = "s1" if isinstance(message, protocol.TakeControl) else message.to
+                    return [protocol.Ack(message.id), protocol.ControlChanged(message.run, holder, "tiny")]
+                case protocol.RenameRun() | protocol.PinRun() | protocol.UnpinRun() | protocol.DeleteRun():
+                    return self._mark(message)
                 case protocol.PauseRun() | protocol.ResumeRun() | protocol.StopRun():
                     return self._control(message)
                 case protocol.PresentView():
@@ -282,6 +306,8 @@ class TinyService:
         parent = self.runs[message.run]
         if message.index >= self.computed:
             return [protocol.Error(message.id, "not_computed", f"Frame {message.index} is not computed yet.")]
+        if message.forcing_revision not in (None, parent.info.forcing_revision):
+            return [protocol.Error(message.id, "refused", "The forcing has moved on.")]
         child = self.add_run(parent, message.index)
         parent.info = msgspec.structs.replace(parent.info, status="paused")
         session.move_to(child.info.run, message.index)
@@ -289,9 +315,39 @@ class TinyService:
         return [
             protocol.Ack(message.id, {"run": child.info.run}),
             protocol.RunChanged(child.info),
+            self._forcing(child),
             protocol.EditsChanged(child.info.run, log.revision, log.edits, log.can_undo, log.can_redo),
             protocol.RunChanged(parent.info),
         ]
+
+    @staticmethod
+    def _forcing(run: TinyRun) -> protocol.ForcingChanged:
+        return protocol.ForcingChanged(
+            run.info.run, run.info.forcing_revision, run.forcing, run.applied, ITEMS
+        )
+
+    def _force(self, message: protocol.ChangeForcing) -> list[protocol.ServerMessage]:
+        run = self.runs[message.run]
+        if any(change.factor == 13.0 for change in message.changes):
+            return [protocol.Error(message.id, "invalid_forcing", "Thirteen is refused.")]
+        run.forcing = message.changes
+        revision = run.info.forcing_revision + 1
+        run.info = msgspec.structs.replace(run.info, forcing_revision=revision)
+        return [protocol.Ack(message.id, {"revision": revision}), self._forcing(run)]
+
+    def _mark(
+        self, message: protocol.RenameRun | protocol.PinRun | protocol.UnpinRun | protocol.DeleteRun
+    ) -> list[protocol.ServerMessage]:
+        run = self.runs[message.run]
+        match message:
+            case protocol.DeleteRun():
+                return [protocol.Ack(message.id), protocol.RunRemoved(message.run)]
+            case protocol.RenameRun():
+                run.info = msgspec.structs.replace(run.info, label=message.label)
+            case _:
+                pinned = isinstance(message, protocol.PinRun)
+                run.info = msgspec.structs.replace(run.info, pinned=pinned)
+        return [protocol.Ack(message.id), protocol.RunChanged(run.info)]
 
     def _channel(self, message: protocol.GetChannel) -> list[protocol.ServerMessage]:
         self.channels_asked.append((message.index, message.channel))

@@ -19,6 +19,9 @@ class RunBook:
         progress: the newest progress of each run.
         working_lists: the newest list of edits of each run.
         applied: the edits each run was computed with, as far as known.
+        forcing: the newest forcing of each run that was watched.
+        controllers: who controls each run, as far as told.
+        control_requests: who asked last for the control of a run that is controlled from here.
     """
 
     def __init__(self) -> None:
@@ -31,6 +34,9 @@ class RunBook:
         self.progress: dict[str, protocol.Progress] = {}
         self.working_lists: dict[str, protocol.EditsChanged] = {}
         self.applied: dict[str, tuple[protocol.Edit, ...]] = {}
+        self.forcing: dict[str, protocol.ForcingChanged] = {}
+        self.controllers: dict[str, protocol.ControlChanged] = {}
+        self.control_requests: dict[str, protocol.ControlRequested] = {}
         self._by_revision: dict[tuple[str, int], tuple[protocol.Edit, ...]] = {}
 
     def note_run(self, info: protocol.RunInfo) -> None:
@@ -39,6 +45,17 @@ class RunBook:
         if known is not None and known.frame_count > info.frame_count:
             info = msgspec.structs.replace(info, frame_count=known.frame_count)
         self.runs[info.run] = info
+
+    def remove(self, run: str) -> None:
+        """A run is deleted."""
+        self.runs.pop(run, None)
+        self.controllers.pop(run, None)
+        self.control_requests.pop(run, None)
+
+    def note_control(self, message: protocol.ControlChanged) -> None:
+        """Take over who controls a run; whoever asked for it is answered."""
+        self.controllers[message.run] = message
+        self.control_requests.pop(message.run, None)
 
     def note_frame_count(self, run: str, index: int) -> None:
         """A frame of `run` exists; the count in its description may be older."""
@@ -83,6 +100,10 @@ class RunBook:
             for case in self.cases
         )
 
+    def _controller(self, run: str) -> tuple[str, str]:
+        control = self.controllers.get(run)
+        return ("", "") if control is None or control.session is None else (control.session, control.client)
+
     def run_rows(self) -> tuple[RunRow, ...]:
         """Return the runs for the run panel."""
         return tuple(
@@ -96,6 +117,11 @@ class RunBook:
                 computed_until=max(info.frame_count - 1, 0) * info.output_interval,
                 duration=info.duration,
                 device=info.device,
+                label=info.label,
+                pinned=info.pinned,
+                moves=info.moves,
+                controller=self._controller(info.run),
+                asker=asker.session if (asker := self.control_requests.get(info.run)) else "",
             )
             for info in self.runs.values()
         )

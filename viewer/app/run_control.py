@@ -9,7 +9,9 @@ from pathlib import Path
 import protocol
 from viewer.app.editing import Editing
 from viewer.app.endpoint import read_token, stream_url
+from viewer.app.forcing_work import ForcingWork
 from viewer.app.recalculation import Recalculation
+from viewer.app.run_steering import RunSteering
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
 from viewer.app.terrain_pictures import TerrainPictures
@@ -17,13 +19,10 @@ from viewer.commands import (
     Command,
     CommandError,
     ConnectTo,
-    PauseRun,
     Recalculate,
     Reconnect,
-    ResumeRun,
     SelectRun,
     StartRun,
-    StopRun,
 )
 from viewer.errors import TerrainDataError
 from viewer.net import ConnectionThread, FrameLoader
@@ -45,10 +44,11 @@ class RunControl:
     Attributes:
         desk: the dealings with the service.
         editing: the edit tool.
+        steering: pauses, ends, names, keeps runs, and their control.
+        forcing: the working forcing.
         shown: the run on the picture, None before the first terrain has come.
         recalculated: the newest recalculation asked for.
         message: the newest sentence for the user.
-        resuming: called before a run is taken up again.
         presented: called with what another session shows of its view.
         opened: called when a connection stands.
         is_stale: whether anything changed since somebody last looked; set True here, False by who looks.
@@ -65,10 +65,11 @@ class RunControl:
         self.desk = ServiceDesk(connection, self)
         self.editing = Editing(self.desk, self.say)
         self.editing.list.settled = self._edits_settled
+        self.steering = RunSteering(self.desk, lambda: self.require_run().run)
+        self.forcing = ForcingWork(self.desk)
         self.shown: ShownRun | None = None
         self.recalculated: Recalculation | None = None
         self.message = ""
-        self.resuming: Callable[[], None] = lambda: None
         self.presented: Callable[[protocol.ViewPresented], None] = lambda message: None
         self.opened: Callable[[], None] = lambda: None
         self.is_stale = True
@@ -97,17 +98,10 @@ class RunControl:
                 self.start_run(command)
             case SelectRun(run):
                 self.select_run(run)
-            case PauseRun(run):
-                self.desk.pause_run(run or self.require_run().run)
-            case ResumeRun(run):
-                self.resuming()
-                self.desk.resume_run(run or self.require_run().run)
-            case StopRun(run):
-                self.desk.stop_run(run or self.require_run().run)
             case Recalculate():
                 self.recalculate()
             case _:
-                return False
+                return self.steering.carry_out(command) or self.forcing.carry_out(command, self.shown)
         return True
 
     def start_run(self, command: StartRun) -> None:
@@ -121,12 +115,14 @@ class RunControl:
             if info is not None:
                 self.run_changed(info)
 
+        forcing = self.forcing.for_start(command.case, self.shown) if command.with_forcing else ()
         self.say(f"starting {command.case} ...")
         self.desk.start_run(
             command.case,
             command.duration,
             command.output_interval,
             command.device,
+            forcing,
             started,
             lambda _reason: None,
         )
@@ -179,7 +175,8 @@ class RunControl:
         def refused(_reason: str) -> None:
             self.recalculated = None
 
-        self.desk.recalculate(shown.run, index, document.revision, done, refused)
+        forcing_revision = self.forcing.revision(shown.run)
+        self.desk.recalculate(shown.run, index, document.revision, forcing_revision, done, refused)
         self.say("recalculating ...")
 
     def require_run(self) -> ShownRun:

@@ -121,30 +121,34 @@ class ServiceDesk:
         duration: float | None,
         interval: float | None,
         device: str,
+        forcing: tuple[protocol.ForcingChange, ...],
         done: Reply,
         refused: Refusal,
     ) -> None:
         """Ask for a new run."""
         self._link.send(
             lambda number: protocol.StartRun(
-                number, case=case, duration=duration, output_interval=interval, device=device
+                number,
+                case=case,
+                duration=duration,
+                output_interval=interval,
+                device=device,
+                forcing=forcing,
             ),
             f"start {case}",
             done,
             refused,
         )
 
-    def pause_run(self, run: str) -> None:
-        """Ask to hold a run."""
-        self._link.send(lambda number: protocol.PauseRun(number, run=run), "pause the run")
-
-    def resume_run(self, run: str) -> None:
-        """Ask to go on with a run."""
-        self._link.send(lambda number: protocol.ResumeRun(number, run=run), "resume the run")
-
-    def stop_run(self, run: str) -> None:
-        """Ask to end a run."""
-        self._link.send(lambda number: protocol.StopRun(number, run=run), "stop the run")
+    def ask(
+        self,
+        make: Callable[[int], protocol.ClientMessage],
+        what: str,
+        done: Reply | None = None,
+        refused: Refusal | None = None,
+    ) -> None:
+        """Send the command that `make` builds around a fresh id; see `ServiceLink.send`."""
+        self._link.send(make, what, done, refused)
 
     def fetch_terrain(self, info: protocol.RunInfo) -> None:
         """Ask for the base bed of a run, and for what pictures there are of it."""
@@ -228,10 +232,20 @@ class ServiceDesk:
         """Ask to make the change taken back last again."""
         self._link.send(lambda number: protocol.RedoEdit(number, run=run), "redo", done, refused)
 
-    def recalculate(self, run: str, index: int, revision: int, done: Reply, refused: Refusal) -> None:
-        """Ask for a branch at a frame with the working list of edits."""
+    def recalculate(
+        self,
+        run: str,
+        index: int,
+        revision: int,
+        forcing_revision: int | None,
+        done: Reply,
+        refused: Refusal,
+    ) -> None:
+        """Ask for a branch at a frame with the working list of edits and the working forcing."""
         self._link.send(
-            lambda number: protocol.Recalculate(number, run=run, index=index, revision=revision),
+            lambda number: protocol.Recalculate(
+                number, run=run, index=index, revision=revision, forcing_revision=forcing_revision
+            ),
             "recalculate",
             done,
             refused,
@@ -270,6 +284,16 @@ class ServiceDesk:
                     self._note_run(info)
             case protocol.RunChanged():
                 self._note_run(message.run)
+            case protocol.RunRemoved():
+                self.book.remove(message.run)
+            case protocol.ForcingChanged():
+                self.book.forcing[message.run] = message
+            case protocol.ControlChanged():
+                self.book.note_control(message)
+            case protocol.ControlRequested():
+                self.book.control_requests[message.run] = message
+                asker = message.client or "another session"
+                self._listener.say(f"{asker} ({message.session}) asks for the control of this run")
             case protocol.RunBranched():
                 self._note_run(message.child)
                 self._listener.say("somebody recalculated this run; the branch is in the list of runs")

@@ -6,6 +6,7 @@ import dataclasses
 
 from viewer.app.edit_report import edit_rows, undone_rows
 from viewer.app.editing import Editing
+from viewer.app.forcing_work import ForcingWork, forcing_rows
 from viewer.app.levee_watch import LeveeWatch
 from viewer.app.picture_text import readout
 from viewer.app.recalculation import Recalculation
@@ -49,6 +50,7 @@ def run_status(
     desk: ServiceDesk,
     recalculated: Recalculation | None,
     watch: LeveeWatch,
+    forcing: ForcingWork,
 ) -> ViewStatus:
     """Return `status` with what is known of the shown run."""
     info, document = shown.info, shown.document
@@ -57,6 +59,7 @@ def run_status(
     return dataclasses.replace(
         status,
         shown_run=shown.run,
+        forcing=forcing_rows(desk.book.forcing.get(shown.run), forcing.changes(shown.run)),
         title=info.title,
         hypothetical=info.hypothetical,
         has_terrain=True,

@@ -116,7 +116,7 @@ class ViewerApp:
         channels = ChannelFeed(self.desk, ChannelLoader())
         self.water = WaterView(self.feed, channels)
         self.comparison = Comparison(self.desk, loader, self.feed, channels, self.control.resubscribe)
-        self.control.resuming = self.comparison.return_stream
+        self.control.steering.resuming = self.comparison.return_stream
         self.control.editing.reach = self._click_reach
         self.control.editing.look = lambda x, y: self.pointing.readout(x, y, self.shown)
         self.presenting = Presenting(self.control, self.clock)
@@ -361,7 +361,9 @@ class ViewerApp:
         )
         if self.shown is None:
             return status
-        status = run_status(status, self.shown, self.desk, self.recalculated, self._levee_watch)
+        status = run_status(
+            status, self.shown, self.desk, self.recalculated, self._levee_watch, self.control.forcing
+        )
         status = self.water.told(status, self.shown, self.options)
         compared = self.comparison.told(status)
         measured = self.measuring.report(compared, self.shown)

@@ -42,6 +42,7 @@ from viewer.commands.edits import (
     TakeLevel,
     Undo,
 )
+from viewer.commands.forcing import ChangeForcing, ResetForcing
 from viewer.commands.mapping import command_from_mapping
 from viewer.commands.measuring import AddMeasurePoint, BeginMeasure, EndMeasure
 from viewer.commands.picture import (
@@ -63,14 +64,20 @@ from viewer.commands.presenting import FollowView, PresentView
 from viewer.commands.runs import (
     CompareWith,
     ConnectTo,
+    DeleteRun,
     MoveSwipe,
     PauseRun,
+    PinRun,
     Recalculate,
     Reconnect,
+    ReleaseControl,
+    RenameRun,
     ResumeRun,
     SelectRun,
     StartRun,
     StopRun,
+    TakeControl,
+    UnpinRun,
 )
 
 __all__ = [
@@ -83,11 +90,13 @@ __all__ = [
     "CancelEdit",
     "ChangeEdit",
     "ChangeEditSettings",
+    "ChangeForcing",
     "Command",
     "CommandError",
     "CompareWith",
     "ConnectTo",
     "DeleteEdit",
+    "DeleteRun",
     "DragEdit",
     "DragOrbit",
     "DragPan",
@@ -110,14 +119,18 @@ __all__ = [
     "MoveVertex",
     "Pause",
     "PauseRun",
+    "PinRun",
     "Play",
     "PresentView",
     "ProbeAt",
     "Recalculate",
     "Reconnect",
     "Redo",
+    "ReleaseControl",
     "ReleaseMoves",
     "RenameEdit",
+    "RenameRun",
+    "ResetForcing",
     "ResetView",
     "ResumeRun",
     "SaveEdits",
@@ -130,10 +143,12 @@ __all__ = [
     "StartRun",
     "StopRun",
     "StrokeTo",
+    "TakeControl",
     "TakeLevel",
     "TogglePlay",
     "TopView",
     "Undo",
+    "UnpinRun",
     "Zoom",
     "command_from_mapping",
 ]

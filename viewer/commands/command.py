@@ -39,6 +39,7 @@ from viewer.commands.edits import (
     TakeLevel,
     Undo,
 )
+from viewer.commands.forcing import ChangeForcing, ResetForcing
 from viewer.commands.measuring import AddMeasurePoint, BeginMeasure, EndMeasure
 from viewer.commands.picture import (
     MoveHover,
@@ -59,14 +60,20 @@ from viewer.commands.presenting import FollowView, PresentView
 from viewer.commands.runs import (
     CompareWith,
     ConnectTo,
+    DeleteRun,
     MoveSwipe,
     PauseRun,
+    PinRun,
     Recalculate,
     Reconnect,
+    ReleaseControl,
+    RenameRun,
     ResumeRun,
     SelectRun,
     StartRun,
     StopRun,
+    TakeControl,
+    UnpinRun,
 )
 from viewer.errors import ViewerError
 
@@ -99,6 +106,14 @@ Command = (
     | PauseRun
     | ResumeRun
     | StopRun
+    | RenameRun
+    | PinRun
+    | UnpinRun
+    | DeleteRun
+    | TakeControl
+    | ReleaseControl
+    | ChangeForcing
+    | ResetForcing
     | Recalculate
     | ChangeEditSettings
     | BeginEdit

@@ -7,14 +7,20 @@ from dataclasses import dataclass
 __all__ = [
     "CompareWith",
     "ConnectTo",
+    "DeleteRun",
     "MoveSwipe",
     "PauseRun",
+    "PinRun",
     "Recalculate",
     "Reconnect",
+    "ReleaseControl",
+    "RenameRun",
     "ResumeRun",
     "SelectRun",
     "StartRun",
     "StopRun",
+    "TakeControl",
+    "UnpinRun",
 ]
 
 
@@ -38,12 +44,21 @@ class Reconnect:
 
 @dataclass(frozen=True)
 class StartRun:
-    """Compute `case` from its start; None keeps the case's own duration and interval [s]."""
+    """Compute `case` from its start; None keeps the case's own duration and interval [s].
+
+    Attributes:
+        case: name of the case.
+        duration: simulated time [s].
+        output_interval: time between frames [s].
+        device: "auto", "cpu" or "cuda:N".
+        with_forcing: with the working forcing of the shown run, which is to be of the same case.
+    """
 
     case: str
     duration: float | None = None
     output_interval: float | None = None
     device: str = "auto"
+    with_forcing: bool = False
 
 
 @dataclass(frozen=True)
@@ -94,5 +109,50 @@ class StopRun:
 
 
 @dataclass(frozen=True)
+class RenameRun:
+    """Give `run` (None: the run that is shown) a name for people; an empty one takes it away."""
+
+    label: str
+    run: str | None = None
+
+
+@dataclass(frozen=True)
+class PinRun:
+    """Keep `run` (None: the run that is shown) whatever the budget of the store."""
+
+    run: str | None = None
+
+
+@dataclass(frozen=True)
+class UnpinRun:
+    """Let `run` (None: the run that is shown) go again when the store needs room."""
+
+    run: str | None = None
+
+
+@dataclass(frozen=True)
+class DeleteRun:
+    """Forget `run` (None: the run that is shown) and its frames."""
+
+    run: str | None = None
+
+
+@dataclass(frozen=True)
+class TakeControl:
+    """Control `run` (None: the run that is shown), by force also while another session is active."""
+
+    run: str | None = None
+    force: bool = False
+
+
+@dataclass(frozen=True)
+class ReleaseControl:
+    """Give up the control of `run` (None: the run that is shown), to another session or to nobody."""
+
+    run: str | None = None
+    to: str | None = None
+
+
+@dataclass(frozen=True)
 class Recalculate:
-    """Compute anew with the working list of edits from the playback time on."""
+    """Compute anew from the playback time on, with the working list of edits and the working forcing."""

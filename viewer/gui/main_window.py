@@ -35,6 +35,7 @@ from viewer.gui.conductor import Conductor, Painter
 from viewer.gui.connection_panel import ConnectionPanel
 from viewer.gui.depth_plot import DepthPlot
 from viewer.gui.edit_panel import EditPanel
+from viewer.gui.forcing_panel import ForcingPanel
 from viewer.gui.kept_settings import KeptSettings
 from viewer.gui.layers_panel import LayersPanel
 from viewer.gui.picture_dialog import PictureDialog, ask_picture_path
@@ -98,6 +99,7 @@ class MainWindow(QMainWindow):
         self.playback.stepped.connect(self._step)
         self.edit_panel = EditPanel(self._dispatch)
         self.run_panel = RunPanel(self._dispatch)
+        self.forcing_panel = ForcingPanel(self._dispatch)
         self.depth_plot = DepthPlot()
         self.water_panel = WaterPanel(self._dispatch)
         self.connection_panel = ConnectionPanel(self._dispatch)
@@ -117,6 +119,7 @@ class MainWindow(QMainWindow):
             self._dock("Depth at a point", self.depth_plot, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Water", self.water_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
             self._dock("Layers", self.layers_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
+            self._dock("Forcing", self.forcing_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
             self._dock("Connection", self.connection_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
         ]
         self.docks[-1].hide()
@@ -146,6 +149,7 @@ class MainWindow(QMainWindow):
             self.playback.show_status(status)
             self.edit_panel.show_status(status)
             self.run_panel.show_status(status)
+            self.forcing_panel.show_status(status)
             self.depth_plot.show_status(status)
             self.water_panel.show_status(status)
             self.swipe_handle.show_status(status)

@@ -36,13 +36,6 @@ def test_every_frame_taken_lets_another_one_come(flight: Flight) -> None:
     assert CREDIT < 40
 
 
-def test_pause_resume_and_stop_change_the_run(flight: Flight) -> None:
-    desk = flight.app.desk
-    for ask, status in ((desk.pause_run, "paused"), (desk.resume_run, "running"), (desk.stop_run, "stopped")):
-        ask("run-1")
-        flight.until(lambda status=status: flight.app.desk.book.runs["run-1"].status == status)  # type: ignore[misc]
-
-
 def test_a_run_that_somebody_else_branched_is_told_and_listed(flight: Flight) -> None:
     child = flight.service.add_run(flight.service.runs["run-1"], 5).info
     flight.app.desk._handle(protocol.RunBranched("run-1", child))

@@ -19,7 +19,7 @@ def test_the_program_part_needs_no_run() -> None:
 def test_the_run_part_says_what_can_be_done_now(flight: Flight) -> None:
     app = flight.app
     status = program_status(app.desk, app.clock, app.control.editing, "")
-    made = run_status(status, flight.shown, app.desk, None, LeveeWatch())
+    made = run_status(status, flight.shown, app.desk, None, LeveeWatch(), app.control.forcing)
 
     assert (made.can_recalculate, made.can_undo, made.is_recalculating) == (True, False, False)
     assert (made.computed_until, made.duration) == (19 * INTERVAL, 39 * INTERVAL)
