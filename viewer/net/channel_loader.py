@@ -23,7 +23,7 @@ ChannelKey = tuple[str, int, str]
 FIELD_BYTES = 384 << 20
 WAITING_MOST = 4
 """Packed channels that may wait; beyond that the oldest is forgotten, for something newer is wanted."""
-FAST_SHARE = 98.0
+FAST_SHARE = 90.0
 """This percentile of the speeds of moving water is the speed that arrows are scaled by."""
 MOVING_M_S = 0.01
 NOWHERE = np.float32(-1.0)

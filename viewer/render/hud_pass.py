@@ -104,7 +104,8 @@ class HudPass:
             draws += 1
         if hud.legend and inputs.flow is not None:
             speed = arrow_speed(inputs.flow.fast)
-            text, length = inputs.options.units.speed_text(speed), LONGEST_PX * size[1] / 720.0
+            units, length = inputs.options.units, LONGEST_PX * size[1] / 720.0
+            text = f"{units.shown(speed):.3g} {units.speed}"
             texture = self._panel(
                 "flow", (text, length, scale), lambda: hud_panels.flow_panel(text, length, scale)
             )

@@ -19,11 +19,11 @@ from viewer.world.heightfield import Heightfield
 
 __all__ = ["Arrows", "FlowField", "arrow_speed", "flow_arrows"]
 
-SPACING_PX = 44.0
+SPACING_PX = 40.0
 """Least distance of arrows on a picture 720 pixels high."""
-LONGEST_PX = 40.0
+LONGEST_PX = 38.0
 """Length of the arrow of the fastest water on such a picture; slower water has shorter ones in proportion."""
-SHORTEST_PX = 7.0
+SHORTEST_PX = 9.0
 WIDTH_PX = 9.0
 LEAST_DEPTH = 0.05
 """Water shallower than this has no arrow [m]."""
@@ -119,7 +119,7 @@ def flow_arrows(
 
     fastest = arrow_speed(flow.fast)
     pixel = (reach / SPACING_PX) * distance[kept]
-    length = np.clip(LONGEST_PX * speed[kept] / fastest, SHORTEST_PX, 1.25 * LONGEST_PX) * pixel
+    length = np.clip(LONGEST_PX * speed[kept] / fastest, SHORTEST_PX, 1.4 * LONGEST_PX) * pixel
     records = np.stack(
         [
             east[kept],

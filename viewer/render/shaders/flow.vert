@@ -20,11 +20,13 @@ void main() {
     float grown = gl_VertexID < 6 ? sign(at.x + 0.2) : gl_VertexID == 7 ? 2.2 : -1.0;
     vec2 place = in_place + in_along * at.x + ahead * grown * edge
         + aside * (at.y * in_width + sign(at.y) * edge * (gl_VertexID < 6 ? 1.0 : 1.9));
-    vec2 uv = clamp(place / (grid.xy * grid.w) + 0.5, vec2(0.0), vec2(1.0));
+    // Level, at the height of the water in its middle, so that no bank bends it.
+    vec2 uv = in_place / (grid.xy * grid.w) + 0.5;
     float z = textureLod(height, uv, 0.0).r;
     z += max(water_depth_at(uv, z), 0.0);
-    vec4 clip = view_projection * vec4(place.x, vertical.y + vertical.x * (z - vertical.y), -place.y, 1.0);
-    // Nearer by a hair, so that waves between vertices do not swallow it; the rim stays behind the arrow.
-    clip.z -= (rim > 0.0 ? 0.0006 : 0.0008) * clip.w;
+    float up = vertical.y + vertical.x * (z - vertical.y) + 0.3 * in_width;
+    vec4 clip = view_projection * vec4(place.x, up, -place.y, 1.0);
+    // Nearer by a hair, so that water and banks do not swallow it; the rim stays behind the arrow.
+    clip.z -= (rim > 0.0 ? 0.0010 : 0.0014) * clip.w;
     gl_Position = clip;
 }
