@@ -92,7 +92,7 @@ class LineFormatter(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         """The line of a record, without its end."""
-        message = record.getMessage()
+        message = record.getMessage().rstrip("\n")
         if record.name.startswith("uvicorn"):
             message = _QUERY.sub("?" + CONCEALED, message)
         trace = self.formatException(record.exc_info) if record.exc_info else ""

@@ -10,6 +10,8 @@ from fastapi import APIRouter
 from fastapi.responses import Response
 
 from solver_service.errors import StoreError
+from solver_service.web.api_answers import text_answer
+from solver_service.web.api_examples import EVENTS
 from solver_service.web.auth import Access, Gate
 from solver_service.web.overview_feed import EventStream, OverviewFeed
 from solver_service.web.scopes import Scope
@@ -48,7 +50,7 @@ def page_router(feed: OverviewFeed, gate: Gate, needs: Callable[[Scope], Any]) -
     @router.get(
         "/v1/events",
         response_class=Response,
-        responses={200: {"content": {"text/event-stream": {"schema": {"type": "string"}}}}},
+        responses=text_answer("text/event-stream", EVENTS, 409),
     )
     async def events(access: Access = operator) -> EventStream:
         """The overview as server-sent events: whole at first, then what has changed."""

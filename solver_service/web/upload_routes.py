@@ -8,6 +8,9 @@ from typing import Annotated, Any
 from fastapi import APIRouter, HTTPException, Path, Request
 
 from solver_service.uploads.upload_desk import Sender, UploadDesk
+from solver_service.uploads.upload_record import UploadRecord
+from solver_service.web.api_answers import answers
+from solver_service.web.api_examples import UPLOAD
 from solver_service.web.auth import Access
 from solver_service.web.quotas import Quotas, owner_of
 from solver_service.web.scopes import Scope
@@ -15,25 +18,16 @@ from solver_service.web.scopes import Scope
 UPLOAD_ID = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", examples=["u0123456789ab"])]
 CASE_NAME = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", examples=["river"])]
 
-EXAMPLE = {
-    "upload": "u0123456789ab",
-    "label": "Ada, desk 3",
-    "bytes_sent": 1048576,
-    "status": "importing",
-    "bytes_received": 1048576,
-    "stage": "reading",
-    "done": 0.0,
-    "case": "",
-    "message": "",
-    "warnings": [],
-    "since": 1700000000.0,
-    "ended": None,
-}
 BODY = {
     "requestBody": {
         "required": True,
         "description": "The archive: a zip of the folder of a case (.fevcase).",
-        "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
+        "content": {
+            "application/zip": {
+                "schema": {"type": "string", "format": "binary"},
+                "example": "PK (the bytes of river.fevcase)",
+            }
+        },
     }
 }
 
@@ -53,7 +47,8 @@ def upload_router(desk: UploadDesk, quotas: Quotas, needs: Callable[[Scope], Any
         "/v1/uploads",
         status_code=202,
         openapi_extra=BODY,
-        responses={202: {"content": {"application/json": {"example": EXAMPLE}}}},
+        response_model=None,
+        responses=answers(UploadRecord, UPLOAD, 409, 413, 429, 507, status=202),
     )
     async def upload_case(request: Request, access: Access = controller) -> dict[str, Any]:
         """Upload a case; the answer comes when all of it has come, and its import goes on."""
@@ -64,7 +59,8 @@ def upload_router(desk: UploadDesk, quotas: Quotas, needs: Callable[[Scope], Any
     @router.get(
         "/v1/uploads",
         dependencies=[needs(Scope.VIEWER)],
-        responses={200: {"content": {"application/json": {"example": [EXAMPLE]}}}},
+        response_model=None,
+        responses=answers(list[UploadRecord], [UPLOAD]),
     )
     async def uploads() -> list[dict[str, Any]]:
         """The uploads under way and the latest that have ended, newest first."""
@@ -73,7 +69,8 @@ def upload_router(desk: UploadDesk, quotas: Quotas, needs: Callable[[Scope], Any
     @router.get(
         "/v1/uploads/{upload}",
         dependencies=[needs(Scope.VIEWER)],
-        responses={200: {"content": {"application/json": {"example": EXAMPLE}}}, 404: {}},
+        response_model=None,
+        responses=answers(UploadRecord, UPLOAD, 404),
     )
     async def upload_status(upload: UPLOAD_ID) -> dict[str, Any]:
         """Where an upload stands; once it has ended, the case or why it was refused."""
@@ -82,7 +79,12 @@ def upload_router(desk: UploadDesk, quotas: Quotas, needs: Callable[[Scope], Any
             raise HTTPException(404, f"there is no upload {upload!r}")
         return record.facts()
 
-    @router.delete("/v1/cases/{case}", dependencies=[needs(Scope.OPERATOR)], status_code=204)
+    @router.delete(
+        "/v1/cases/{case}",
+        dependencies=[needs(Scope.OPERATOR)],
+        status_code=204,
+        responses=answers(None, None, 409, status=204),
+    )
     async def remove_case(case: CASE_NAME) -> None:
         """Remove an uploaded case; refused while runs are of it."""
         await desk.remove(case)
