@@ -1,11 +1,14 @@
 import dataclasses
+from pathlib import Path
 
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QToolButton
 from pytestqt.qtbot import QtBot
 
-from tests.viewer.gui.conftest import Recorder
+import protocol
+from tests.viewer.gui.conftest import OpenWindow, Recorder
 from viewer.commands import (
     BeginEdit,
     BeginLevelPick,
@@ -22,6 +25,7 @@ from viewer.commands import (
     RenameEdit,
     SaveEdits,
     SelectEdit,
+    TopView,
     Undo,
 )
 from viewer.gui.edit_panel import EditPanel
@@ -182,3 +186,74 @@ def test_every_button_has_a_name_and_a_tip_and_the_menu_has_all_actions(panel: E
     assert all(button.toolTip() for button in buttons)
     actions = {action for action in panel.menu_actions() if action is not None}
     assert {button.defaultAction() for button in buttons} | {panel.recalculate} == actions
+
+
+def test_a_person_draws_moves_names_deletes_and_keeps_edits(
+    opened: OpenWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    app, window, bot = opened.app, opened.window, opened.bot
+    panel, scene = window.edit_panel, window.scene
+
+    def edits() -> tuple[protocol.Edit, ...]:
+        return app.shown.document.edits if app.shown is not None else ()
+
+    def drag(*places: tuple[float, float]) -> None:
+        bot.mousePress(scene, Qt.MouseButton.LeftButton, pos=opened.pixel_of(*places[0]))
+        for place in places[1:]:
+            pictures = scene.pictures
+            bot.mouseMove(scene, opened.pixel_of(*place))
+            opened.until(lambda pictures=pictures: scene.pictures > pictures)
+        bot.mouseRelease(scene, Qt.MouseButton.LeftButton, pos=opened.pixel_of(*places[-1]))
+
+    app.dispatch(ChangeEditSettings(width=30.0, magnitude=2.0))
+    app.dispatch(TopView())
+    opened.until(lambda: app.is_settled)
+    bot.keyClick(scene, Qt.Key.Key_B, Qt.KeyboardModifier.ShiftModifier)
+    opened.until(lambda: opened.status.edit_tool == "area")
+    corners = ((1600.0, 2150.0), (1700.0, 2150.0), (1700.0, 2250.0))
+    for number, corner in enumerate(corners, 1):
+        opened.click(*corner)
+        opened.until(lambda number=number: opened.status.drawn_vertices == number)
+    opened.click(*corners[0])
+    opened.until(lambda: len(edits()) == 1 and not app.is_busy)
+    assert isinstance(edits()[0], protocol.EditArea)
+
+    bot.keyClick(scene, Qt.Key.Key_B)
+    opened.until(lambda: opened.status.edit_tool == "line")
+    drag(*((1300.0 + 20.0 * step, 2200.0) for step in range(8)), (1440.0, 2300.0), (1440.0, 2400.0))
+    bot.keyClick(scene, Qt.Key.Key_Return)
+    opened.until(lambda: len(edits()) == 2 and not app.is_busy)
+    line = edits()[1]
+    np.testing.assert_allclose(line.vertices, [(1300, 2200), (1440, 2200), (1440, 2400)], atol=15.0)
+
+    bot.keyClick(scene, Qt.Key.Key_X)
+    opened.until(lambda: opened.status.edit_tool == "select")
+    drag((1370.0, 2200.0), (1370.0, 2230.0), (1370.0, 2280.0))
+    opened.until(lambda: edits()[1].vertices != line.vertices and not app.is_busy)
+    np.testing.assert_allclose(edits()[1].vertices, np.add(line.vertices, (0.0, 80.0)), atol=15.0)
+    opened.until(lambda: bool(panel.edits.selectedItems()))
+
+    monkeypatch.setattr(QInputDialog, "getText", lambda *_arguments: ("Levee", True))
+    bot.keyClick(scene, Qt.Key.Key_F2)
+    opened.until(lambda: edits()[1].name == "Levee" and not app.is_busy)
+    path = tmp_path / "edits.geojson"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_arguments: (str(path), ""))
+    panel.save.trigger()
+    kept = edits()
+    bot.keyClick(scene, Qt.Key.Key_Delete)
+    opened.until(lambda: len(edits()) == 1 and not app.is_busy)
+    for _ in range(2):
+        opened.until(panel.undo.isEnabled)
+        revision = opened.status.revision
+        bot.keyClick(scene, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+        opened.until(lambda revision=revision: opened.status.revision > revision and not app.is_busy)
+    assert [edit.name for edit in edits()] == ["", ""]
+    for _ in range(4):
+        bot.keyClick(scene, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+        bot.wait(120)
+    opened.until(lambda: edits() == () and not app.is_busy)
+    opened.until(lambda: panel.edits.count() == 2)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_arguments: (str(path), ""))
+    panel.load.trigger()
+    opened.until(lambda: not app.is_busy and len(edits()) == 2)
+    assert edits() == kept
