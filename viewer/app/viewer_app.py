@@ -33,6 +33,7 @@ from viewer.app.view_options import changed_options, option_values
 from viewer.app.water_feed import WaterFeed
 from viewer.app.water_view import WaterView
 from viewer.commands import (
+    CancelEdit,
     Command,
     CommandError,
     FlyTo,
@@ -166,9 +167,9 @@ class ViewerApp:
             self.presenting.carry_out(command)
             or self.playback.carry_out(command)
             or self._steer(command)
-            or self.measuring.carry_out(command, self.shown)
+            or self._measure(command)
             or self.comparison.carry_out(command, self.shown)
-            or self.control.editing.carry_out(command, self.shown)
+            or self._edit(command)
         ):
             return
         match command:
@@ -195,6 +196,18 @@ class ViewerApp:
             self.comparison.end()
             self.camera_work = None
             self.feed.forget()
+        return is_done
+
+    def _edit(self, command: Command) -> bool:
+        is_done = self.control.editing.carry_out(command, self.shown)
+        if is_done and self.control.editing.tool and self.measuring.is_on:
+            self.measuring.put_away()  # one tool in the hand
+        return is_done
+
+    def _measure(self, command: Command) -> bool:
+        is_done = self.measuring.carry_out(command, self.shown)
+        if is_done and self.measuring.is_on and self.control.editing.tool:
+            self.control.editing.carry_out(CancelEdit(), self.shown)  # one tool in the hand
         return is_done
 
     # --- time ---------------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import QMainWindow
 
 from viewer.commands import ChangeEditSettings, CommandError, FlyTo, command_from_mapping
 from viewer.gui.view_menu import OptionValue
+from viewer.tools import Bindings
 from viewer.view_status import EditSettings
 
 __all__ = ["KeptSettings"]
@@ -76,6 +77,14 @@ class KeptSettings:
     def keep_edit_settings(self, settings: EditSettings) -> None:
         """Remember the settings of the edit tool."""
         self._write("edits/tool", dataclasses.asdict(settings))
+
+    def bindings(self) -> Bindings:
+        """Return what keys and mouse do."""
+        return Bindings.from_mapping(self._mapping("input/bindings"))
+
+    def keep_bindings(self, bindings: Bindings) -> None:
+        """Remember what keys and mouse do."""
+        self._write("input/bindings", bindings.as_mapping())
 
     def views(self, terrain: str) -> dict[str, FlyTo]:
         """Return the views kept for a terrain, by name."""

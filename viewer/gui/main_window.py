@@ -22,7 +22,9 @@ from PySide6.QtWidgets import (
 )
 
 from viewer.commands import (
+    BeginMeasure,
     Command,
+    EndMeasure,
     FlyTo,
     FollowLive,
     Pause,
@@ -31,6 +33,7 @@ from viewer.commands import (
     SetOption,
     TogglePlay,
 )
+from viewer.gui.bindings_dialog import BindingsDialog
 from viewer.gui.conductor import Conductor, Painter
 from viewer.gui.connection_panel import ConnectionPanel
 from viewer.gui.depth_plot import DepthPlot
@@ -48,6 +51,7 @@ from viewer.gui.status_line import StatusLine
 from viewer.gui.swipe_handle import SwipeHandle
 from viewer.gui.view_menu import ViewMenu
 from viewer.gui.water_panel import WaterPanel
+from viewer.tools import Bindings
 from viewer.view_status import ViewStatus
 
 __all__ = ["MainWindow"]
@@ -56,6 +60,7 @@ TICK_MS = 16
 DOCK_WIDTH = 340
 MAP_MARGIN = 12
 _CURSORS = {
+    "measure": Qt.CursorShape.CrossCursor,
     "line": Qt.CursorShape.CrossCursor,
     "area": Qt.CursorShape.CrossCursor,
     "level": Qt.CursorShape.WhatsThisCursor,
@@ -128,6 +133,9 @@ class MainWindow(QMainWindow):
         self.view_menu = ViewMenu(self._dispatch, self._keep_view, self)
         self.view_menu.map_shown.toggled.connect(self.reference_map.setVisible)
         self._make_menus()
+        self._shortcuts = {_name_of(action): action for action in self._menu_actions()}
+        self._default_shortcuts = {name: a.shortcut().toString() for name, a in self._shortcuts.items()}
+        self._bindings = Bindings()
         self._restore()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.tick)
@@ -157,8 +165,10 @@ class MainWindow(QMainWindow):
             self.layers_panel.show_status(status)
             self.view_menu.show_status(status)
             self.presenting_menu.show_status(status)
+            self.measure.setChecked(status.is_measuring)
             self.setWindowTitle(f"{status.title or 'no run'} - Flood Emergency Visualizer")
-            self.scene.setCursor(_CURSORS.get(status.edit_tool, Qt.CursorShape.ArrowCursor))
+            tool = "measure" if status.is_measuring else status.edit_tool
+            self.scene.setCursor(_CURSORS.get(tool, Qt.CursorShape.ArrowCursor))
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """End cleanly: first the picture, then whatever the caller has to close."""
@@ -183,6 +193,7 @@ class MainWindow(QMainWindow):
                 self._dispatch(SetOption(name, value))
         self.view_menu.map_shown.setChecked(self._kept.map_shown())
         self._dispatch(self._kept.edit_settings())
+        self._bind(self._kept.bindings())
 
     def _keep(self) -> None:
         if self._kept is None:
@@ -262,6 +273,10 @@ class MainWindow(QMainWindow):
         self.presenting_menu = PresentingMenu(self._dispatch, self)
         self.menuBar().addMenu(self.presenting_menu)
         self.view_menu.add_docks(self.docks)
+        tools = self.menuBar().addMenu("&Tools")
+        self.measure = self._action(tools, "Measure distance and area", "G", self._toggle_measuring)
+        self.measure.setCheckable(True)
+        self._action(tools, "Keys and mouse ...", None, self._change_bindings)
 
     def _action(self, menu: QMenu, text: str, shortcut: str | None, slot: Callable[[], object]) -> QAction:
         action = menu.addAction(text)
@@ -269,6 +284,27 @@ class MainWindow(QMainWindow):
             action.setShortcut(QKeySequence(shortcut))
         action.triggered.connect(lambda: slot())
         return action
+
+    def _menu_actions(self) -> list[QAction]:
+        menus = [menu for bar in self.menuBar().actions() if isinstance(menu := bar.menu(), QMenu)]
+        return [action for menu in menus for action in menu.actions() if _name_of(action)]
+
+    def _bind(self, bindings: Bindings) -> None:
+        self._bindings = bindings
+        self.scene.bind(bindings)
+        for name, action in self._shortcuts.items():
+            text = bindings.shortcuts.get(name, self._default_shortcuts[name])
+            action.setShortcut(QKeySequence(text))
+
+    def _change_bindings(self) -> None:
+        dialog = BindingsDialog(self._bindings, self._default_shortcuts, self)
+        if dialog.exec() == QDialog.DialogCode.Accepted:
+            self._bind(dialog.bindings)
+            if self._kept is not None:
+                self._kept.keep_bindings(self._bindings)
+
+    def _toggle_measuring(self) -> None:
+        self._dispatch(EndMeasure() if self._conductor.status().is_measuring else BeginMeasure())
 
     def _step(self, frames: int) -> None:
         status = self._conductor.status()
@@ -286,3 +322,10 @@ class MainWindow(QMainWindow):
         dialog = PictureDialog(self)
         if dialog.exec() == QDialog.DialogCode.Accepted:
             self._dispatch(dialog.command)
+
+
+def _name_of(action: QAction) -> str:
+    """The name of an entry in the table of shortcuts; empty for separators, submenus and docks."""
+    if action.menu() is not None or isinstance(action.parent(), QDockWidget):
+        return ""
+    return action.text().replace("&", "").removesuffix(" ...")

@@ -6,41 +6,36 @@ import time
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QPointF, Qt, Signal
-from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QSurfaceFormat, QWheelEvent
+from PySide6.QtGui import (
+    QFocusEvent,
+    QKeyEvent,
+    QMouseEvent,
+    QNativeGestureEvent,
+    QSurfaceFormat,
+    QWheelEvent,
+)
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QWidget
 
-from viewer.commands import Command
+from viewer.commands import Command, GrabView, Zoom
 from viewer.errors import ViewerError
 from viewer.gui.conductor import Conductor, Painter
-from viewer.tools import PointerEvent, Toolbox
+from viewer.gui.key_names import name_of_key
+from viewer.tools import Bindings, PointerEvent, Toolbox
 from viewer.tools.pointer import Button, PointerKind
 
 __all__ = ["SceneWidget", "surface_format"]
 
 WHEEL_NOTCH = 120.0
 FRAME_RATE_SMOOTHING = 0.9
+PINCH_STEPS = 6.0
+"""Wheel notches that a pinch to twice the size is worth."""
+_PINCH = Qt.NativeGestureType.ZoomNativeGesture
 
 _BUTTONS: dict[Qt.MouseButton, Button] = {
     Qt.MouseButton.LeftButton: "left",
     Qt.MouseButton.MiddleButton: "middle",
     Qt.MouseButton.RightButton: "right",
-}
-_KEYS = {
-    Qt.Key.Key_W: "w",
-    Qt.Key.Key_A: "a",
-    Qt.Key.Key_S: "s",
-    Qt.Key.Key_D: "d",
-    Qt.Key.Key_Q: "q",
-    Qt.Key.Key_E: "e",
-    Qt.Key.Key_Left: "left",
-    Qt.Key.Key_Right: "right",
-    Qt.Key.Key_Up: "up",
-    Qt.Key.Key_Down: "down",
-    Qt.Key.Key_Return: "enter",
-    Qt.Key.Key_Enter: "enter",
-    Qt.Key.Key_Escape: "escape",
-    Qt.Key.Key_Backspace: "backspace",
 }
 
 
@@ -148,11 +143,25 @@ class SceneWidget(QOpenGLWidget):
         self._mouse("move", event, with_ground=False, button=held)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Pass the wheel on to the tools."""
+        """Pass the wheel on to the tools, and two fingers on a trackpad."""
+        event.accept()
+        if event.phase() != Qt.ScrollPhase.NoScrollPhase:
+            self._scroll(event)
+            return
         steps = event.angleDelta().y() / WHEEL_NOTCH
         pointer = self._pointer("wheel", event.position(), "none", steps=steps)
         self._send(self._toolbox.pointer(pointer, tool=self._tool))
-        event.accept()
+
+    def event(self, event: QEvent) -> bool:
+        """Pass a pinch on a trackpad on: it comes nearer or goes away."""
+        if isinstance(event, QNativeGestureEvent) and event.gestureType() == _PINCH:
+            self._send([Zoom(PINCH_STEPS * event.value())])
+            return True
+        return super().event(event)
+
+    def bind(self, bindings: Bindings) -> None:
+        """Let keys and mouse do what the tables say."""
+        self._toolbox.bind(bindings)
 
     def leaveEvent(self, event: QEvent) -> None:
         """The pointer is over the picture no more."""
@@ -162,16 +171,17 @@ class SceneWidget(QOpenGLWidget):
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Pass a key on to the tools."""
-        name = _KEYS.get(Qt.Key(event.key()))
-        if name is None or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+        name = name_of_key(event.key())
+        if not name or event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             super().keyPressEvent(event)
         elif not event.isAutoRepeat():
-            self._send(self._toolbox.key_pressed(name, tool=self._tool))
+            commands = self._toolbox.key_pressed(name, tool=self._tool)
+            self._send(commands) if commands else super().keyPressEvent(event)
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """Pass a key on to the tools."""
-        name = _KEYS.get(Qt.Key(event.key()))
-        if name is None:
+        name = name_of_key(event.key())
+        if not name:
             super().keyReleaseEvent(event)
         elif not event.isAutoRepeat():
             self._send(self._toolbox.key_released(name))
@@ -181,9 +191,19 @@ class SceneWidget(QOpenGLWidget):
         self._send(self._toolbox.keyboard_lost())
         super().focusOutEvent(event)
 
+    def _scroll(self, event: QWheelEvent) -> None:
+        if event.phase() in (Qt.ScrollPhase.ScrollBegin, Qt.ScrollPhase.ScrollEnd):
+            self._send([GrabView(event.phase() == Qt.ScrollPhase.ScrollBegin)])
+        height = max(1, self.height())
+        delta = event.pixelDelta()
+        if delta.x() or delta.y():
+            pointer = PointerEvent("scroll", 0.0, 0.0, dx=delta.x() / height, dy=delta.y() / height)
+            self._send(self._toolbox.orbit.handle(pointer))
+
     @property
     def _tool(self) -> str:
-        return self._conductor.status().edit_tool
+        status = self._conductor.status()
+        return "measure" if status.is_measuring else status.edit_tool
 
     def _mouse(
         self,

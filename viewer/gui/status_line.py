@@ -60,8 +60,9 @@ class StatusLine(QStatusBar):
             frames_per_second: pictures a second.
             render_scale: pixels of the scene for each pixel of the picture, along one side.
         """
-        self.message.setText(status.message)
-        self.message.setToolTip(status.message)
+        told = status.measured or status.message
+        self.message.setText(told)
+        self.message.setToolTip(told)
         self.point.setText(readout_text(status.hover, status.units))
         self.time.setText(" ".join(filter(None, (time_text(status.time), status.clock))))
         self.revision.setText(f"edits rev {status.revision}" if status.has_terrain else "")

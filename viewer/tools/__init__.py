@@ -1,5 +1,6 @@
 """What the mouse and the keys mean: pointer and key events in, commands out; knows no toolkit."""
 
+from viewer.tools.bindings import Bindings, MouseTable
 from viewer.tools.edit_tool import EditTool
 from viewer.tools.level_tool import LevelTool
 from viewer.tools.measure_tool import MeasureTool
@@ -10,10 +11,12 @@ from viewer.tools.select_tool import SelectTool
 from viewer.tools.toolbox import Toolbox
 
 __all__ = [
+    "Bindings",
     "EditTool",
     "LevelTool",
     "MeasureTool",
     "MotionKeys",
+    "MouseTable",
     "OrbitTool",
     "PointerEvent",
     "SelectTool",

@@ -11,10 +11,6 @@ __all__ = ["MeasureTool"]
 class MeasureTool:
     """Measures with the left button; other buttons and the wheel stay with the camera."""
 
-    def wants(self, event: PointerEvent) -> bool:
-        """Whether the event is for measuring rather than for the camera."""
-        return event.button == "left" or (event.kind == "move" and event.button == "none")
-
     def handle(self, event: PointerEvent) -> list[Command]:
         """Return what the event asks for."""
         if event.kind == "move":

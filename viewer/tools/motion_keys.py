@@ -5,22 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from viewer.commands import HoldMove
+from viewer.tools.bindings import MOTION_KEYS
 
-__all__ = ["MOTION_KEYS", "MotionKeys"]
-
-MOTION_KEYS: Mapping[str, str] = {
-    "w": "pan_forward",
-    "s": "pan_back",
-    "a": "pan_left",
-    "d": "pan_right",
-    "left": "orbit_left",
-    "right": "orbit_right",
-    "up": "orbit_up",
-    "down": "orbit_down",
-    "q": "zoom_out",
-    "e": "zoom_in",
-}
-"""Key name to the name of a `viewer.world.Move`."""
+__all__ = ["MotionKeys"]
 
 
 class MotionKeys:

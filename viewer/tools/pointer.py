@@ -10,7 +10,7 @@ __all__ = ["Button", "Drag", "PointerEvent", "PointerKind"]
 CLICK_SHARE = 0.006
 """A press and release nearer than this share of the picture height are a click."""
 
-PointerKind = Literal["press", "move", "release", "double", "wheel", "leave"]
+PointerKind = Literal["press", "move", "release", "double", "wheel", "scroll", "leave"]
 Button = Literal["left", "middle", "right", "none"]
 
 
@@ -19,12 +19,15 @@ class PointerEvent:
     """What the pointer did.
 
     Attributes:
-        kind: press, move, release, double (second press of a double click), wheel or leave.
+        kind: press, move, release, double (second press of a double click), wheel, scroll (two fingers) or
+            leave.
         x: distance from the left edge of the picture, in picture heights.
         y: distance from its top edge, in picture heights.
         button: the button that went down or up, or is held while moving.
         shift: whether shift is held.
         steps: wheel notches, positive away from the user.
+        dx: how far two fingers went to the right, in picture heights.
+        dy: how far they went down.
         ground: map coordinates (x, y) [m] of what is seen under the pointer; None: the sky, or not looked up.
     """
 
@@ -35,6 +38,8 @@ class PointerEvent:
     shift: bool = False
     steps: float = 0.0
     ground: tuple[float, float] | None = None
+    dx: float = 0.0
+    dy: float = 0.0
 
 
 class Drag:

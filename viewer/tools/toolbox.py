@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from viewer.commands import Command, ReleaseMoves
+from viewer.tools.bindings import Bindings
 from viewer.tools.edit_tool import EditTool
 from viewer.tools.level_tool import LevelTool
+from viewer.tools.measure_tool import MeasureTool
 from viewer.tools.motion_keys import MotionKeys
 from viewer.tools.orbit_tool import OrbitTool
 from viewer.tools.pointer import PointerEvent
@@ -27,7 +29,7 @@ class _HandTool(Protocol):
 
 
 class Toolbox:
-    """The camera's tool, the edit tools by name and the motion keys behind one door."""
+    """The camera's tool, the other tools by name and the motion keys behind one door."""
 
     def __init__(self) -> None:
         self.orbit = OrbitTool()
@@ -38,7 +40,13 @@ class Toolbox:
             "area": drawing,
             "select": SelectTool(),
             "level": LevelTool(),
+            "measure": MeasureTool(),
         }
+
+    def bind(self, bindings: Bindings) -> None:
+        """Let keys and mouse do what the tables say."""
+        self.orbit.table = bindings.mouse
+        self.keys = MotionKeys(bindings.keys)
 
     def pointer(self, event: PointerEvent, *, tool: str = "") -> Sequence[Command]:
         """Return the commands for a pointer event; `tool`: the name of the tool in hand."""

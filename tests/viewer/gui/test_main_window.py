@@ -6,7 +6,7 @@ from PySide6.QtGui import QImage
 
 from tests.viewer.gui.conftest import OpenWindow
 from tests.viewer.tiny_service import FRAMES, INTERVAL, valley
-from viewer.commands import Seek
+from viewer.commands import BeginEdit, BeginMeasure, Seek
 
 
 def picture(opened: OpenWindow) -> np.ndarray:
@@ -123,4 +123,26 @@ def test_the_menu_reaches_every_view_option(opened: OpenWindow) -> None:
     ]
 
     assert {"Whole terrain", "From above", "Vertical exaggeration", "Contours", "Terrain error"} <= set(texts)
-    assert {"Depth classes", "Wireframe", "Undo edit", "Redo edit", "Recalculate from now"} <= set(texts)
+    assert {"Next water colours", "Wireframe", "Recalculate from now"} <= set(texts)
+    assert [text.split()[0] for text in texts if text.startswith(("Undo", "Redo"))] == ["Undo", "Redo"]
+
+
+def test_a_distance_is_measured_by_mouse_and_escape_ends_it(opened: OpenWindow) -> None:
+    opened.bot.keyClick(opened.window, Qt.Key.Key_G)
+    opened.until(lambda: opened.status.is_measuring)
+    opened.until(lambda: opened.window.measure.isChecked())
+    opened.click(1280.0, 2360.0)
+    opened.click(1480.0, 2360.0)
+    opened.until(lambda: " m, " in opened.window.status_line.message.text())
+    assert opened.status.edit_tool == ""
+    opened.bot.keyClick(opened.window.scene, Qt.Key.Key_Escape)
+    opened.until(lambda: not opened.status.is_measuring)
+
+
+def test_one_tool_is_in_the_hand(opened: OpenWindow) -> None:
+    opened.app.dispatch(BeginEdit())
+    opened.app.dispatch(BeginMeasure())
+    assert (opened.status.edit_tool, opened.status.is_measuring) == ("", True)
+    opened.app.dispatch(BeginEdit())
+
+    assert (opened.status.edit_tool, opened.status.is_measuring) == ("line", False)

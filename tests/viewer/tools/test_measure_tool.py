@@ -14,14 +14,6 @@ def test_a_click_sets_a_point_and_moving_leads_the_rubber_band() -> None:
     assert tool.handle(PointerEvent("release", 0.5, 0.5, "left", ground=GROUND)) == []
 
 
-def test_the_camera_keeps_its_buttons_and_the_wheel() -> None:
-    tool = MeasureTool()
-
-    assert tool.wants(PointerEvent("press", 0.5, 0.5, "left"))
-    assert not tool.wants(PointerEvent("press", 0.5, 0.5, "right"))
-    assert not tool.wants(PointerEvent("wheel", 0.5, 0.5, steps=1.0))
-
-
 def test_escape_puts_the_tool_away() -> None:
     assert MeasureTool().handle_key("escape") == [EndMeasure()]
     assert MeasureTool().handle_key("enter") == []

@@ -1,6 +1,6 @@
 from viewer.commands import HoldMove
 from viewer.tools import MotionKeys
-from viewer.tools.motion_keys import MOTION_KEYS
+from viewer.tools.bindings import MOTION_KEYS
 from viewer.world import Move
 
 

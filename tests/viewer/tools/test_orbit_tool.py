@@ -1,7 +1,7 @@
 import pytest
 
 from viewer.commands import DragOrbit, DragPan, GrabView, MoveHover, ProbeAt, Zoom
-from viewer.tools import OrbitTool, PointerEvent
+from viewer.tools import MouseTable, OrbitTool, PointerEvent
 
 
 def drag(button: str, shift: bool = False) -> list[object]:
@@ -58,3 +58,17 @@ def test_a_bare_move_reads_out_what_is_under_the_pointer() -> None:
     assert tool.handle(PointerEvent("move", 0.5, 0.5, ground=(3.0, 4.0))) == [MoveHover(3.0, 4.0)]
     assert tool.handle(PointerEvent("move", 0.5, 0.1)) == [MoveHover(None, None)]
     assert tool.handle(PointerEvent("leave", 0.0, 0.0)) == [MoveHover(None, None)]
+
+
+def test_the_table_says_what_drags_the_wheel_and_two_fingers_do() -> None:
+    tool = OrbitTool(MouseTable(left="pan", right="zoom", wheel="farther", scroll="orbit"))
+    tool.handle(PointerEvent("press", 0.5, 0.5, "left"))
+    (panned,) = tool.handle(PointerEvent("move", 0.6, 0.5, "left"))
+    tool.handle(PointerEvent("release", 0.6, 0.5, "left"))
+    tool.handle(PointerEvent("press", 0.5, 0.5, "right"))
+    (zoomed,) = tool.handle(PointerEvent("move", 0.5, 0.25, "right"))
+
+    assert isinstance(panned, DragPan)
+    assert zoomed == Zoom(3.0)
+    assert tool.handle(PointerEvent("wheel", 0.5, 0.5, steps=1.0)) == [Zoom(-1.0)]
+    assert tool.handle(PointerEvent("scroll", 0.0, 0.0, dx=0.1, dy=0.2)) == [DragOrbit(0.1, 0.2)]

@@ -1,6 +1,8 @@
 from viewer.commands import (
+    AddMeasurePoint,
     AddVertex,
     CancelEdit,
+    EndMeasure,
     GrabEdit,
     GrabView,
     HoldMove,
@@ -9,7 +11,7 @@ from viewer.commands import (
     TakeLevel,
     Zoom,
 )
-from viewer.tools import PointerEvent, Toolbox
+from viewer.tools import Bindings, MouseTable, PointerEvent, Toolbox
 
 PRESS = PointerEvent("press", 0.5, 0.5, "left", ground=(1.0, 2.0))
 
@@ -48,3 +50,17 @@ def test_motion_keys_work_while_drawing() -> None:
 
 def test_without_the_keyboard_nothing_is_held() -> None:
     assert Toolbox().keyboard_lost() == [ReleaseMoves()]
+
+
+def test_the_measuring_tool_is_one_of_them() -> None:
+    assert Toolbox().pointer(PRESS, tool="measure") == [AddMeasurePoint(1.0, 2.0)]
+    assert Toolbox().key_pressed("escape", tool="measure") == [EndMeasure()]
+
+
+def test_the_tables_can_be_changed() -> None:
+    box = Toolbox()
+    box.bind(Bindings(MouseTable(wheel="farther"), {"k": "zoom_in"}))
+
+    assert box.key_pressed("k") == [HoldMove("zoom_in", True)]
+    assert box.key_pressed("w") == []
+    assert box.pointer(PointerEvent("wheel", 0.5, 0.5, steps=1.0)) == [Zoom(-1.0)]
