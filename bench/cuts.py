@@ -27,12 +27,17 @@ from solver_service.runs.audience import Audience
 from solver_service.runs.case_facts import CaseFacts
 from solver_service.runs.controllers import Controllers
 from solver_service.runs.edit_desk import EditDesk
+from solver_service.runs.forcing_desk import ForcingDesk
 from solver_service.runs.run_tree import Run, RunTree
 from solver_service.runs.store_thread import StoreThread
 from solver_service.store import DataFolder, FrameReader, FrameRecord, FrameWriter, RunDatabase, RunRecord
+from solver_service.web.auth import LOCAL
 from solver_service.web.commands import carry_out
 from solver_service.web.frame_feed import FrameFeed
 from solver_service.web.outbox import Outbox
+from solver_service.web.quotas import Quotas
+from solver_service.web.token_limits import TokenLimits
+from solver_service.web.token_store import TokenStore
 
 COUNT = 1000
 SMOKE_COUNT = 50
@@ -54,7 +59,9 @@ class StoredRuns:
         self.tree = RunTree()
         self.audience = Audience()
         self.edits = EditDesk(self.tree, self.store, self.audience)
+        self.forcing = ForcingDesk(self.tree, self.store, self.audience)
         self.controllers = Controllers(self.audience.announce)
+        self.quotas = Quotas(TokenLimits(), TokenStore(root), self)  # type: ignore[arg-type]
         self._fill(folder)
 
     async def read_frame(self, record: FrameRecord) -> bytes:
@@ -91,6 +98,7 @@ class _ServiceSide:
 
     def __init__(self, runs: StoredRuns, name: str) -> None:
         self.registry = runs
+        self.quotas = runs.quotas
         self.session = protocol.ServerSession()
         self.feed = FrameFeed(runs, self.session)  # type: ignore[arg-type]
         self.outbox = Outbox()
@@ -122,7 +130,7 @@ class _ServiceSide:
                 self.registry.controllers.replaced(message.resume.session, self.identity)
         elif isinstance(message, protocol.Command):
             try:
-                await carry_out(message, self)  # type: ignore[arg-type]
+                await carry_out(message, self, LOCAL)  # type: ignore[arg-type]
             except protocol.ProtocolError as error:
                 self.tell(protocol.Error(message.id, error.code, str(error)))
 
