@@ -189,13 +189,20 @@ class PresenterRow:
 
 @dataclass(frozen=True)
 class PointReadout:
-    """Water and ground at a map point: depth [m], water level and ground elevation [m above the datum]."""
+    """Water and ground at a map point: depth [m], water level and ground elevation [m above the datum].
+
+    Attributes:
+        speed: of the water [m/s]; None where it is not known.
+        bearing: compass bearing toward which it flows [deg]; None where it stands or is not known.
+    """
 
     x: float
     y: float
     ground: float
     depth: float
     level: float | None
+    speed: float | None = None
+    bearing: float | None = None
 
 
 @dataclass(frozen=True)
@@ -234,6 +241,9 @@ class ViewStatus:
         legend: classes on the picture, lowest first; empty for natural water.
         recalculate_latency_s: from the last Recalculate to its first changed frame on the picture [s].
         depth_record: (times [s], depths [m]) at the probed point, frames loaded so far.
+        speed_record: (times [s], speeds [m/s]) there, as far as velocity has come.
+        other_depth_record: the same of the run that is compared with.
+        other_speed_record: the same of the run that is compared with.
     """
 
     connection: str = "not connected"
@@ -288,6 +298,9 @@ class ViewStatus:
     hover: PointReadout | None = None
     probe: PointReadout | None = None
     depth_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    speed_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    other_depth_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    other_speed_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
     speed_x_real_time: float | None = None
     volume_error_relative: float | None = None
     options: tuple[tuple[str, bool | float | str], ...] = ()

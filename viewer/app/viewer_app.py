@@ -15,6 +15,7 @@ from viewer.app.camera_work import CameraWork
 from viewer.app.channel_feed import ChannelFeed
 from viewer.app.comparison import Comparison
 from viewer.app.edit_report import edit_overlay
+from viewer.app.flow_probe import FlowProbe
 from viewer.app.hud_writer import HudWriter
 from viewer.app.levee_watch import LeveeWatch
 from viewer.app.map_maker import MapMaker
@@ -102,7 +103,8 @@ class ViewerApp:
         self.control = RunControl(connection, loader, self.clock, self._new_terrain, autostart)
         self.playback = Playback(self.clock, self.control.require_run)
         self.feed = WaterFeed(loader, self.desk.book, self.control.request_frame)
-        self.pointing = Pointing(loader, self.feed)
+        channels = ChannelFeed(self.desk, ChannelLoader())
+        self.pointing = Pointing(loader, self.feed, FlowProbe(channels, self.feed))
         self.options = RenderOptions()
         self.camera_work: CameraWork | None = None
         self._picture_order: SavePicture | None = None
@@ -114,7 +116,6 @@ class ViewerApp:
         self._map_maker = MapMaker()
         self._traffic = Traffic()
         self._levee_watch = LeveeWatch()
-        channels = ChannelFeed(self.desk, ChannelLoader())
         self.water = WaterView(self.feed, channels)
         self.comparison = Comparison(self.desk, loader, self.feed, channels, self.control.resubscribe)
         self.control.steering.resuming = self.comparison.return_stream
@@ -251,7 +252,7 @@ class ViewerApp:
         if self._status_stale and now - self._status_made >= STATUS_PERIOD_S:
             self._status_stale = False
             self._status_made = now
-            self.pointing.trace(self.shown)
+            self.pointing.trace(self.shown, self.comparison.other)
             made = self._make_status()
             if made != self._status:
                 self._status = made
@@ -380,4 +381,4 @@ class ViewerApp:
         status = self.water.told(status, self.shown, self.options)
         compared = self.comparison.told(status)
         measured = self.measuring.report(compared, self.shown)
-        return self.pointing.report(measured, self.shown)
+        return self.pointing.report(measured, self.shown, self.comparison.other)

@@ -22,7 +22,11 @@ def readout_text(readout: PointReadout | None, units: Units = METRIC) -> str:
     if readout.level is None:
         return f"dry, {ground}"
     depth, level = units.length_text(readout.depth), units.length_text(readout.level)
-    return f"depth {depth}, level {level}, {ground}"
+    flow = ""
+    if readout.speed is not None:
+        toward = "" if readout.bearing is None else f" toward {readout.bearing:.0f}\u00b0"
+        flow = f", {units.speed_text(readout.speed)}{toward}"
+    return f"depth {depth}{flow}, level {level}, {ground}"
 
 
 def age_text(status: ViewStatus) -> str:

@@ -5,7 +5,7 @@ from viewer.commands import MoveHover, Pause, ProbeAt, Seek
 
 
 def pointing_of(flight: Flight) -> Pointing:
-    return Pointing(flight.app.loader, flight.app.feed)
+    return Pointing(flight.app.loader, flight.app.feed, flight.app.pointing._flow)
 
 
 def test_the_pointer_is_followed_and_forgotten(flight: Flight) -> None:
