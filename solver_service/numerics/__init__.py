@@ -6,7 +6,7 @@ from solver_service.numerics.bed_change import BedChange
 from solver_service.numerics.breach import Breach, BreachState
 from solver_service.numerics.budget import VolumeBudget
 from solver_service.numerics.conduits import ConduitState
-from solver_service.numerics.device import device_names, pick_device, warm_kernels
+from solver_service.numerics.device import device_names, free_memory, pick_device, warm_kernels
 from solver_service.numerics.edge_boundary import EdgeBoundary
 from solver_service.numerics.gauges import GaugeSeries
 from solver_service.numerics.infiltration import Infiltration
@@ -51,6 +51,7 @@ __all__ = [
     "allocation_table",
     "device_bytes",
     "device_names",
+    "free_memory",
     "pick_device",
     "warm_kernels",
 ]

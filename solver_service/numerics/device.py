@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import psutil
 import warp as wp
 
 from solver_service.errors import DeviceError
@@ -28,6 +29,13 @@ def device_names() -> list[str]:
     """Devices that can compute here, `cpu` first."""
     wp.init()
     return ["cpu", *(device.alias for device in wp.get_cuda_devices())]
+
+
+def free_memory() -> dict[str, int]:
+    """Memory that is free on each device [bytes], by its name; that of the host for `cpu`."""
+    wp.init()
+    cards = {device.alias: int(device.free_memory) for device in wp.get_cuda_devices()}
+    return {"cpu": int(psutil.virtual_memory().available), **cards}
 
 
 def pick_device(wish: str = "auto") -> str:

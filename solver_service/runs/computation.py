@@ -11,11 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from protocol import CHANNEL_FIELDS, ChannelName, GridInfo, apply_edits
-from solver_service.numerics import ShallowWaterSolver, Snapshot, pick_device
+from solver_service.numerics import (
+    MemoryOptions,
+    ShallowWaterSolver,
+    Snapshot,
+    allocation_table,
+    device_bytes,
+)
 from solver_service.runs.case_facts import CaseFacts
 from solver_service.runs.edit_blobs import unpack_edits
 from solver_service.runs.ground_layers import layers_of
 from solver_service.runs.lineage import Leg
+from solver_service.runs.placement import LocalPlacement, Placement
 from solver_service.scenario import Case, load_case
 from solver_service.scenario.forced_model import ForcedFrom, forced_model, stretches
 from solver_service.scenario.forcing_items import forcing_items
@@ -27,25 +34,32 @@ Course = tuple[ForcedFrom, ...]
 class Computation:
     """A loaded case and its solver."""
 
-    def __init__(self, name: str, device: str, threads: int | None) -> None:
+    def __init__(
+        self, name: str, device: str, threads: int | None, placement: Placement | None = None
+    ) -> None:
         """Load the case and put its first state on the device.
 
         Args:
             name: name or path of the case.
             device: "auto", "cpu" or "cuda:N".
             threads: solver threads on the CPU; None for all cores.
+            placement: chooses the device; None for those of this machine.
 
         Raises:
             ServiceError: the case or the device cannot be used.
         """
         self.name = name
-        self.device = pick_device(device)
         self.case: Case = load_case(name)
         self.fingerprint = fingerprint(self.case)
         self._params = dataclasses.replace(self.case.params, threads=threads or self.case.params.threads)
+        self.device = (placement or LocalPlacement()).place(device, self._needed)
         self._make_solver(())
         self._wall_s = 0.0
         self._advancing_since: float | None = None
+
+    def _needed(self, device: str) -> int:
+        options = MemoryOptions.of(self.case.model, self._params, self._params.threads or 1)
+        return device_bytes(allocation_table(self.case.grid.shape, options, device), device)
 
     @property
     def facts(self) -> CaseFacts:

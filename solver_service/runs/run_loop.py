@@ -143,7 +143,8 @@ class RunLoop:
 
     def _load(self, case: str, device: str) -> Computation:
         held = self._computation
-        if held is None or (held.name, held.device) != (case, pick_device(device)):
+        is_there = held is not None and (device == "auto" or held.device == pick_device(device))
+        if held is None or held.name != case or not is_there:
             self._computation = held = None  # the memory first
             self._keeper.ring.clear()
             self._computation = held = Computation(case, device, self._settings.threads)

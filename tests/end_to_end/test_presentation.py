@@ -74,12 +74,17 @@ def test_a_viewer_that_follows_sees_what_the_presenting_one_sees(service: Servic
 
         follower.until(is_offered)
         follower.app.carry_out(FollowView(follower.app.fresh_status().presenters[0].session))
-        follower.until(lambda: follower.app.shown is not None and follower.app.is_settled)
-        ours, theirs = presenter.app.view_pose(), follower.app.view_pose()
-
+        ours = presenter.app.view_pose()
         assert ours is not None
-        assert theirs is not None
+
+        def is_there() -> bool:
+            theirs = follower.app.view_pose()
+            return theirs is not None and dataclasses.astuple(theirs) == pytest.approx(
+                dataclasses.astuple(ours), abs=0.5
+            )
+
+        follower.until(is_there)
+
         assert follower.app.shown is not None
         assert presenter.app.shown is not None
         assert follower.app.shown.run == presenter.app.shown.run
-        assert dataclasses.astuple(theirs) == pytest.approx(dataclasses.astuple(ours), abs=0.5)
