@@ -37,6 +37,8 @@ def test_a_follower_is_refused_until_control_is_handed_over(
         assert (told.run, told.session) == (run, session_of(client))
         refused = follower.ask(protocol.AppendEdit, run=run, edit=levee("a"))
         assert f"controlled by session {session_of(client)}" in refused.message
+        refused = follower.ask(protocol.ChangeForcing, run=run, changes=())
+        assert f"controlled by session {session_of(client)}" in refused.message
         assert "active" in follower.ask(protocol.TakeControl, run=run).message
         assert client.first(protocol.ControlRequested).session == session_of(follower)
         client.do(protocol.ReleaseControl, run=run, to=session_of(follower))

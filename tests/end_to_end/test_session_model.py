@@ -43,6 +43,7 @@ class Session(RuleBasedStateMachine):
         self.done: dict[str, list[list[str]]] = {}
         self.undone: dict[str, list[list[str]]] = {}
         self.revision: dict[str, int] = {}
+        self.forcing: dict[str, protocol.ForcingChanged] = {}
         self.pinned: set[str] = set()
         self.parent: dict[str, str] = {}
         self.numbers = 0
@@ -59,6 +60,8 @@ class Session(RuleBasedStateMachine):
         self.done[run] = list(self.done.get(like or "", []))
         self.undone[run] = list(self.undone.get(like or "", []))
         self.revision[run] = self.revision.get(like or "", 0)
+        like_it = self.forcing.get(like or "", protocol.ForcingChanged("", 0, ()))
+        self.forcing[run] = protocol.ForcingChanged(run, like_it.revision, like_it.changes, like_it.changes)
 
     @precondition(lambda self: len(self.runs) < 4)
     @rule(paused=st.booleans())
@@ -158,15 +161,33 @@ class Session(RuleBasedStateMachine):
         else:
             assert "no edit to redo" in answer.message
 
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK, rate=st.integers(0, 3), item=st.sampled_from(["rain", "rain", "never"]))
+    def force(self, number: int, rate: int, item: str) -> None:
+        run = self.pick(number)
+        falls = protocol.ForcingSeries((0.0,), (float(rate),))
+        changes = (protocol.ForcingChange(item, series=falls),) if rate else ()
+        answer = self.client.ask(protocol.ChangeForcing, run=run, changes=changes)
+        if rate and item == "never":
+            assert "has no forcing 'never'" in answer.message
+            return
+        held = self.forcing[run]
+        assert answer.result["revision"] == held.revision + 1
+        self.forcing[run] = protocol.ForcingChanged(run, held.revision + 1, changes, held.applied)
+
     @precondition(lambda self: 0 < len(self.runs) < 4)
-    @rule(number=PICK, index=st.integers(0, 12), stale=st.booleans())
-    def recalculate(self, number: int, index: int, stale: bool) -> None:
+    @rule(number=PICK, index=st.integers(0, 12), stale=st.booleans(), ahead=st.sampled_from([None, 0, 1]))
+    def recalculate(self, number: int, index: int, stale: bool, ahead: int | None) -> None:
         run = self.pick(number)
         count = self.infos()[run].frame_count
         revision = self.revision[run] + stale
-        answer = self.client.ask(protocol.Recalculate, run=run, index=index, revision=revision)
+        forcing = None if ahead is None else self.forcing[run].revision + ahead
+        answer = self.client.ask(
+            protocol.Recalculate, run=run, index=index, revision=revision, forcing_revision=forcing
+        )
         if isinstance(answer, protocol.Ack):
             assert not stale
+            assert not ahead
             child = str(answer.result["run"])
             self.know(child, like=run)
             info = self.infos()[child]
@@ -176,8 +197,8 @@ class Session(RuleBasedStateMachine):
         elif "is not computed yet" in answer.message:
             assert index >= count
         else:
-            assert stale, answer.message
-            assert "are at revision" in answer.message
+            assert stale or ahead, answer.message
+            assert ("are at revision" if stale else "forcing of run") in answer.message
 
     def change(self, run: str, names: list[str], revision: Any) -> None:
         self.done[run].append(self.edits[run])
@@ -194,6 +215,7 @@ class Session(RuleBasedStateMachine):
         infos = self.infos()
         for run in self.runs:
             assert infos[run].revision == self.revision[run]
+            assert infos[run].forcing_revision == self.forcing[run].revision
             assert infos[run].pinned == (run in self.pinned)
 
     def teardown(self) -> None:
@@ -202,6 +224,9 @@ class Session(RuleBasedStateMachine):
             told = self.client.first(protocol.EditsChanged, lambda event, run=run: event.run == run)
             if told.revision == self.revision[run]:
                 assert [edit.id for edit in told.edits] == self.edits[run]
+            forced = self.client.first(protocol.ForcingChanged, lambda event, run=run: event.run == run)
+            held = self.forcing[run]
+            assert (forced.changes, forced.applied) == (held.changes, held.applied)
         for run in reversed(self.runs):
             self.client.ask(protocol.StopRun, run=run)
 
