@@ -68,19 +68,21 @@ def test_a_viewer_that_follows_sees_what_the_presenting_one_sees(service: Servic
         presenter.app.carry_out(FlyTo(300.0, 200.0, 500.0, 75.0, 35.0, seconds=0.0))
         presenter.app.carry_out(PresentView())
 
+        ours = presenter.app.desk.session
+
         def is_offered() -> bool:
             presenter.advance()
-            return bool(follower.app.fresh_status().presenters)
+            return ours in [row.session for row in follower.app.fresh_status().presenters]
 
         follower.until(is_offered)
-        follower.app.carry_out(FollowView(follower.app.fresh_status().presenters[0].session))
-        ours = presenter.app.view_pose()
-        assert ours is not None
+        follower.app.carry_out(FollowView(ours))
+        pose = presenter.app.view_pose()
+        assert pose is not None
 
         def is_there() -> bool:
             theirs = follower.app.view_pose()
             return theirs is not None and dataclasses.astuple(theirs) == pytest.approx(
-                dataclasses.astuple(ours), abs=0.5
+                dataclasses.astuple(pose), abs=0.5
             )
 
         follower.until(is_there)
