@@ -1,4 +1,7 @@
-"""What leaves the device for a frame: quantised depth, velocity, maxima; a kernel or two and a copy each."""
+"""What leaves the device for a frame: quantised depth, velocity, maxima; a kernel or two and a copy each.
+
+What the host can do with a copy it does later and elsewhere: the solver waits for the copy alone.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ import warp as wp
 from solver_service.numerics.channel_kernels import gather_maxima, gather_velocity
 from solver_service.numerics.fields import FieldStore
 from solver_service.numerics.wet_block_kernels import BLOCK_STRIDE, classify_blocks, quantise_depth
+
+MAXIMUM_NAMES = ("h_max", "speed_max", "hazard_max", "arrival")
 
 
 def read_quantised(
@@ -26,22 +31,28 @@ def read_quantised(
     return q.numpy().copy(), states.numpy().copy()
 
 
-def read_velocity(store: FieldStore, depth_wet: float) -> npt.NDArray[np.float32]:
-    """Velocity, [2, nrows, ncols]; see `gather_velocity`."""
-    return _gather(gather_velocity, [store.current(name) for name in "huv"], 2, store, depth_wet)
+def read_velocity(store: FieldStore) -> npt.NDArray[np.float32]:
+    """Velocity to the east and north [m/s], [2, nrows, ncols]."""
+    if store.device == "cpu":
+        return np.stack([store.interior("u"), store.interior("v")])
+    return gathered(gather_velocity, [store.current("u"), store.current("v")], 2, store)
 
 
-def read_maximum_fields(store: FieldStore, depth_wet: float) -> npt.NDArray[np.float32]:
-    """Maxima, [4, nrows, ncols]; see `gather_maxima`."""
-    names = ("h_max", "speed_max", "hazard_max", "arrival")
-    arrays = [store.current("h"), *(store.arrays[name] for name in names)]
-    return _gather(gather_maxima, arrays, 4, store, depth_wet)
+def read_maximum_fields(store: FieldStore) -> npt.NDArray[np.float32]:
+    """Largest depth [m], speed [m/s] and hazard, first arrival [s, `NEVER` where it has not come]."""
+    if store.device == "cpu":
+        fields = np.stack([store.interior(name) for name in MAXIMUM_NAMES])
+        np.maximum(fields[0], store.interior("h"), out=fields[0])  # see `gather_maxima`
+        return fields
+    arrays = [store.current("h"), *(store.arrays[name] for name in MAXIMUM_NAMES)]
+    return gathered(gather_maxima, arrays, len(MAXIMUM_NAMES), store)
 
 
-def _gather(
-    kernel: wp.Kernel, arrays: list[wp.array], count: int, store: FieldStore, depth_wet: float
+def gathered(
+    kernel: wp.Kernel, arrays: list[wp.array], count: int, store: FieldStore
 ) -> npt.NDArray[np.float32]:
+    """What a kernel gathers from padded arrays, as an array of the host, [count, nrows, ncols]."""
     shape = (store.nrows, store.ncols)
-    gathered = wp.empty((count, *shape), dtype=wp.float32, device=store.device)
-    wp.launch(kernel, dim=shape, inputs=[*arrays, depth_wet], outputs=[gathered], device=store.device)
-    return np.array(gathered.numpy())
+    fields = wp.empty((count, *shape), dtype=wp.float32, device=store.device)
+    wp.launch(kernel, dim=shape, inputs=arrays, outputs=[fields], device=store.device)
+    return np.array(fields.numpy())

@@ -325,17 +325,16 @@ class ShallowWaterSolver:
         """
         return read_quantised(self._store, scale, depth_wet)
 
-    def velocity_fields(self, depth_wet: float) -> npt.NDArray[np.float32]:
-        """Velocity to the east and north [m/s], host copy [2, nrows, ncols]; 0 below `depth_wet` [m]."""
-        return read_velocity(self._store, depth_wet)
+    def velocity_fields(self) -> npt.NDArray[np.float32]:
+        """Velocity to the east and north [m/s], host copy [2, nrows, ncols]."""
+        return read_velocity(self._store)
 
-    def maximum_fields(self, depth_wet: float) -> npt.NDArray[np.float32]:
-        """Largest depth [m], speed [m/s] and hazard, first arrival [s, inf where never], [4, nrows, ncols].
+    def maximum_fields(self) -> npt.NDArray[np.float32]:
+        """Largest depth [m], speed [m/s], hazard, first arrival [s], host copy [4, nrows, ncols].
 
-        Args:
-            depth_wet: cells never deeper than this [m], and without arrival, are 0.
+        The arrival is `fields.NEVER` where it has not come.
         """
-        return read_maximum_fields(self._store, depth_wet)
+        return read_maximum_fields(self._store)
 
     # --- change and keep ---------------------------------------------------------------------------
 

@@ -155,9 +155,9 @@ class Computation:
         return float(self.solver.depth().max(initial=0.0))
 
     def channel(self, name: ChannelName) -> dict[str, NDArray[np.float32]]:
-        """The fields of a channel at this moment, as rasters of their own."""
+        """The fields of a channel at this moment, as the solver has them."""
         read = self.solver.velocity_fields if name == "velocity" else self.solver.maximum_fields
-        return dict(zip(CHANNEL_FIELDS[name], read(self.depth_wet), strict=True))
+        return dict(zip(CHANNEL_FIELDS[name], read(), strict=True))
 
     def quantise(self, scale: float) -> tuple[NDArray[np.uint16], NDArray[np.uint8]]:
         """Quantised depth and block states of this moment, as arrays of their own."""

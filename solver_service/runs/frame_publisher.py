@@ -13,27 +13,12 @@ import logging
 import queue
 import threading
 import time as clock
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
 
-import numpy as np
-from numpy.typing import NDArray
-
-from protocol import (
-    BlockLayout,
-    ChannelName,
-    DecodedSeries,
-    Frame,
-    FrameEncoder,
-    ProtocolError,
-    encode_channel,
-    encode_series,
-    pack,
-    peek_frame,
-)
+from protocol import BlockLayout, Frame, FrameEncoder, ProtocolError, peek_frame
 from solver_service.errors import StoreError
 from solver_service.runs.frame_grouping import open_key_frame
-from solver_service.runs.frame_series import SERIES
+from solver_service.runs.quantised_frame import QuantisedFrame, pack_channels
 from solver_service.runs.worker_messages import FrameStored
 from solver_service.store import DataFolder, FrameReader, FrameWriter, RunDatabase
 
@@ -41,41 +26,6 @@ LOG = logging.getLogger(__name__)
 
 QUEUE_BYTES = 128 * 1024 * 1024
 """Frames that may wait for the disk; a full queue makes the solver wait."""
-
-
-@dataclass(frozen=True)
-class QuantisedFrame:
-    """The water of one output time as the device gives it.
-
-    Attributes:
-        run: the run.
-        index: frame index.
-        time: simulated time [s].
-        revision: revision of the edits in the bed.
-        q: quantised depth, uint16 [nrows, ncols].
-        states: block states, uint8 [block_rows, block_cols].
-        scale: depth of one unit [m].
-        bed: cells that breaches have lowered, as row x ncols + col, rising, and their bed [m].
-        channels: the channels that go with it, each with its fields by name, float32 [nrows, ncols].
-        series: the records of gauges and sections that belong to it; None where there are none.
-    """
-
-    run: str
-    index: int
-    time: float
-    revision: int
-    q: NDArray[np.uint16]
-    states: NDArray[np.uint8]
-    scale: float
-    bed: tuple[NDArray[np.int64], NDArray[np.float32]] | None = None
-    channels: Mapping[ChannelName, Mapping[str, NDArray[np.float32]]] = field(default_factory=dict)
-    series: DecodedSeries | None = None
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of its rasters."""
-        rasters = (raster for fields in self.channels.values() for raster in fields.values())
-        return self.q.nbytes + sum(raster.nbytes for raster in rasters)
 
 
 class FramePublisher:
@@ -230,16 +180,3 @@ class FramePublisher:
         except (StoreError, ProtocolError) as error:
             LOG.warning("run %s goes on with a new key frame: %s", run, error)
             return None
-
-
-def pack_channels(frame: QuantisedFrame, layout: BlockLayout) -> dict[str, bytes]:
-    """The packed channels and series of a frame, by name."""
-    packed: dict[str, bytes] = {}
-    if frame.series is not None:
-        packed[SERIES] = pack(encode_series(frame.series))
-    for name, fields in frame.channels.items():
-        states = frame.states
-        if name == "maxima":  # all that was ever wet
-            states = layout.classify((fields["max_depth"] > 0.0).astype(np.uint16))
-        packed[name] = encode_channel(layout, frame.run, frame.index, frame.time, name, fields, states)
-    return packed

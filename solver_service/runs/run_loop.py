@@ -22,10 +22,11 @@ from solver_service.runs.computation import Computation
 from solver_service.runs.course import Course, next_index_after
 from solver_service.runs.forced_course import course_of
 from solver_service.runs.frame_grouping import FrameGrouping, grouping_after, open_key_frame
-from solver_service.runs.frame_publisher import FramePublisher, QuantisedFrame
+from solver_service.runs.frame_publisher import FramePublisher
 from solver_service.runs.frame_series import frame_series
 from solver_service.runs.ground_layers import keep_layers
 from solver_service.runs.inbox import Inbox
+from solver_service.runs.quantised_frame import QuantisedFrame
 from solver_service.runs.state_keeper import StateKeeper
 from solver_service.runs.worker_failure import failure_of
 from solver_service.runs.worker_messages import (
@@ -255,8 +256,9 @@ class RunLoop:
         due = due_channels(course.begin.channels, index, leg.first_index, course.begin.last_index)
         channels = {name: computation.channel(name) for name in due}
         series = frame_series(computation.case, solver, leg.run, index, course.begin.output_interval)
+        water, depth_wet = (q, states, scale), computation.depth_wet
         frame = QuantisedFrame(
-            leg.run, index, solver.time, leg.revision, q, states, scale, bed, channels, series
+            leg.run, index, solver.time, leg.revision, *water, bed, channels, series, depth_wet
         )
         self._publisher.publish(frame)
 

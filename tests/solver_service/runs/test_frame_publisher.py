@@ -9,7 +9,8 @@ import pytest
 
 from protocol import BlockLayout, FrameDecoder, peek_frame
 from solver_service.errors import StoreError, StoreFull
-from solver_service.runs.frame_publisher import FramePublisher, QuantisedFrame
+from solver_service.runs.frame_publisher import FramePublisher
+from solver_service.runs.quantised_frame import QuantisedFrame
 from solver_service.runs.worker_messages import FrameStored
 from solver_service.store import DataFolder, FrameReader, RunDatabase, RunRecord
 
