@@ -103,14 +103,14 @@ class Easel:
     def milliseconds(
         self, camera: Camera, waters: list[WaterPair | None], options: RenderOptions
     ) -> tuple[float, FrameStats]:
-        """Least wall time of a picture once all is uploaded [ms], and what it drew."""
-        stats = self.draw(camera, waters[0], options)
-        times = []
+        """Least wall time of a picture once all is uploaded [ms], and what the leanest one drew and took."""
+        self.draw(camera, waters[0], options)
+        times, stats = [], []
         for k in range(PICTURES):
             begun = time.perf_counter()
-            self.draw(camera, waters[k % len(waters)], options)
+            stats.append(self.draw(camera, waters[k % len(waters)], options))
             times.append(time.perf_counter() - begun)
-        return 1e3 * min(times), stats
+        return 1e3 * min(times), min(stats, key=lambda one: one.selection_ms + one.submission_ms)
 
     def upload_milliseconds(self, camera: Camera, waters: list[WaterPair | None]) -> float:
         """What a new water adds to the first picture that shows it [ms]."""
@@ -187,7 +187,8 @@ def _six_tests(easel: Easel, scene: Scene, block_size: int) -> Iterator[dict[str
                 "overall_ms": round(overall, 1),
                 "terrain_ms": round(terrain, 1),
                 "water_ms": round(water_ms, 1),
-                "python_ms": round(stats.selection_ms + stats.submission_ms, 2),
+                "selection_ms": round(stats.selection_ms, 2),
+                "submission_ms": round(stats.submission_ms, 2),
                 "paper_triangles": None if paper is None else paper[number],
                 "paper_overall_ms": None if paper is None else PAPER_MILLISECONDS[scene.paper_name][number],
             }
