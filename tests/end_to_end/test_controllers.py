@@ -37,6 +37,13 @@ def test_a_follower_is_refused_until_control_is_handed_over(
         assert (told.run, told.session) == (run, session_of(client))
         refused = follower.ask(protocol.AppendEdit, run=run, edit=levee("a"))
         assert f"controlled by session {session_of(client)}" in refused.message
+        asked: list[tuple[type[protocol.Command], dict[str, object]]] = [
+            (protocol.AppendEdits, {"edits": (levee("a"), levee("b"))}),
+            (protocol.ReplaceEdit, {"edit": levee("a")}),
+            (protocol.DeleteEdit, {"edit": "a"}),
+        ]
+        for kind, fields in asked:
+            assert "controlled by session" in follower.ask(kind, run=run, **fields).message
         refused = follower.ask(protocol.ChangeForcing, run=run, changes=())
         assert f"controlled by session {session_of(client)}" in refused.message
         assert "active" in follower.ask(protocol.TakeControl, run=run).message
