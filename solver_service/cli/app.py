@@ -329,11 +329,17 @@ def warmup(device: DeviceOption = "auto") -> None:
 
 
 @app.command()
-def doctor(json_line: JsonOption = False) -> None:
-    """Tell versions, devices, memory and folders of this machine."""
+def doctor(
+    json_line: JsonOption = False,
+    config: Annotated[
+        Path | None, typer.Option("--config", help="Settings file (TOML) of the server to check.")
+    ] = None,
+) -> None:
+    """Tell versions, devices and memory, and try what a server needs; exit code 1 where it lacks some."""
     from solver_service.cli.doctor import tell_machine
 
-    tell_machine(json_line)
+    if not tell_machine(json_line, config):
+        raise typer.Exit(1)
 
 
 def main() -> None:

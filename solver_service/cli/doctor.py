@@ -7,10 +7,14 @@ import os
 import platform
 import sys
 import time
+from dataclasses import asdict
 from importlib import metadata
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from solver_service.cli.server_checks import check_server
 
 LIBRARIES = (
     "flood-emergency-visualizer",
@@ -30,12 +34,22 @@ LIBRARIES = (
 )
 
 
-def tell_machine(json_line: bool) -> None:
-    """Print versions, devices, memory and folders."""
+def tell_machine(json_line: bool, config: Path | None = None) -> bool:
+    """Print versions, devices, memory and folders, and whether a server can work here.
+
+    Args:
+        json_line: one JSON object instead of lines.
+        config: the settings file of the server, if any.
+
+    Returns:
+        Whether everything that a server needs is good.
+    """
     facts = machine_facts()
+    checks = check_server(config, os.environ)
+    is_good = all(check.is_good for check in checks)
     if json_line:
-        print(json.dumps(facts), flush=True)
-        return
+        print(json.dumps({**facts, "checks": [asdict(check) for check in checks]}), flush=True)
+        return is_good
     for name, value in facts.items():
         if isinstance(value, dict):
             print(f"{name}:")
@@ -43,6 +57,9 @@ def tell_machine(json_line: bool) -> None:
                 print(f"  {key:<28}{item}")
         else:
             print(f"{name:<30}{value}")
+    for check in checks:
+        print(f"{'ok' if check.is_good else 'BAD':<4}{check.name:<14}{check.words}")
+    return is_good
 
 
 def machine_facts() -> dict[str, Any]:
