@@ -181,6 +181,19 @@ def export(
     export_run(run_id, out, data_dir, zarr)
 
 
+@app.command()
+def upload(
+    case: Annotated[Path, typer.Argument(metavar="CASE", help="Folder of a case, or a .fevcase archive.")],
+    server: Annotated[str, typer.Option("--server", help="Address of the service: ws://HOST:PORT.")],
+    token_file: Annotated[Path, typer.Option("--token-file", help="File with a token of a controller.")],
+    json_line: JsonOption = False,
+) -> None:
+    """Send a case to a service, which checks it and then offers it to everybody."""
+    from solver_service.cli.upload import upload_case
+
+    upload_case(case, server, token_file, json_line)
+
+
 store = typer.Typer(no_args_is_help=True, rich_markup_mode=None, help="Look at, mend and copy stored runs.")
 app.add_typer(store, name="store")
 

@@ -144,6 +144,28 @@ def test_without_leave_to_install_a_missing_driver_stops_and_the_command_is_name
         fev.ensure_libraries(["draw"])
 
 
+def test_a_browser_that_no_package_brings_keeps_nothing_else_from_being_installed(
+    fev: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(fev.sys, "platform", "linux")
+    fev.SYSTEM_LIBRARIES = {
+        **fev.SYSTEM_LIBRARIES,
+        "test": [("no-such-tool", "tool"), ("browser", "chromium-headless-shell")],
+    }
+    fev.BROWSERS = ("no-such-browser",)
+    asked: list[list[str]] = []
+
+    def install(packages: list[str]) -> bool:
+        asked.append(packages)
+        return packages == ["tool"]
+
+    fev.install_packages = install
+    fev.ensure_libraries(["test"])
+
+    assert asked == [["chromium-headless-shell", "tool"], ["tool"]]
+    assert "browser" in capsys.readouterr().err
+
+
 def test_without_the_window_libraries_the_headless_way_stays_open(
     fev: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -162,10 +162,10 @@ function runActions(run) {
   if (!["running", "starting"].includes(run.status)) {
     const question = `Delete ${words} and its ${bytes(run.size)} on disk? This cannot be undone.`;
     const does = () => ask(question, "DELETE", path, `${words}: delete`);
-    const made_ = button("Delete", "delete", `delete ${words}`, does, "danger");
-    made_.disabled = run.pinned;
-    if (run.pinned) made_.title = "pinned runs cannot be deleted";
-    made.append(made_);
+    const last = button("Delete", "delete", `delete ${words}`, does, "danger");
+    last.disabled = run.pinned;
+    if (run.pinned) last.title = "pinned runs cannot be deleted";
+    made.append(last);
   }
   return made;
 }
@@ -195,8 +195,10 @@ function uploadCells(one) {
   let share = 1;
   if (coming) share = one.bytes_sent ? one.bytes_received / one.bytes_sent : null;
   else if (!one.ended) share = one.stage === "unpacking" ? one.done / 2 : one.stage === "reading" ? 0.5 : one.stage ? 0.75 : 0;
-  const told = coming || !one.stage ? bytes(one.bytes_received) : one.ended ? bytes(one.bytes_received) : one.stage;
-  return [from, status, node("td", "", bar(share, `progress of upload ${one.upload}`), node("span", "small", told))];
+  const told = coming || one.ended || !one.stage ? bytes(one.bytes_received) : one.stage;
+  const progress = node("td", "", one.status === "refused" ? "" : bar(share, `progress of upload ${one.upload}`));
+  progress.append(node("span", "small", told));
+  return [from, status, progress];
 }
 
 function tile(title, value, more, share) {
@@ -242,7 +244,7 @@ function show() {
   glance();
   fill("runs", ordered(known.runs), runCells, "no runs");
   fill("devices", [...known.devices], (one) => [
-    node("td", "name", one.device), node("td", "number", `${one.runs} runs`),
+    node("td", "name", one.device), node("td", "number", `${one.runs} ${one.runs === 1 ? "run" : "runs"}`),
     node("td", "number", counted(one.cells)), node("td", "number", String(one.workers)),
   ], "no devices");
   fill("workers", [...known.workers], (one) => [
