@@ -121,6 +121,7 @@ class ForcingRowEditor(QWidget):
         self.now.setAccessibleName(f"Let {self.item} begin now")
         for widget in (self.choice, self.start_min, self.now):
             self._fields.addWidget(widget)
+        self.start_min.setMinimumWidth(80)
 
     def _scaled(self) -> None:
         self._dispatch(ChangeForcing(self.item, factor=self.factor.value()))

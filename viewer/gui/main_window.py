@@ -59,6 +59,8 @@ __all__ = ["MainWindow"]
 TICK_MS = 16
 DOCK_WIDTH = 340
 MAP_MARGIN = 12
+BESIDE = ("Terrain edits", "Forcing")
+"""Docks in one place: what the next branch will differ by."""
 _CURSORS = {
     "measure": Qt.CursorShape.CrossCursor,
     "line": Qt.CursorShape.CrossCursor,
@@ -124,9 +126,14 @@ class MainWindow(QMainWindow):
             self._dock("Depth at a point", self.depth_plot, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Water", self.water_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
             self._dock("Layers", self.layers_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
-            self._dock("Forcing", self.forcing_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
+            self._dock("Forcing", self.forcing_panel, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Connection", self.connection_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
         ]
+        edits, forcing = (
+            next(dock for dock in self.docks if dock.windowTitle() == title) for title in BESIDE
+        )
+        self.tabifyDockWidget(edits, forcing)
+        edits.raise_()
         self.docks[-1].hide()
         self.resizeDocks(self.docks[:3], [DOCK_WIDTH] * 3, Qt.Orientation.Horizontal)
         self.resizeDocks(self.docks[:3], [310, 330, 240], Qt.Orientation.Vertical)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QComboBox, QFormLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QFormLayout, QTabWidget, QVBoxLayout, QWidget
 
 from viewer.commands import CompareWith
 from viewer.gui.conductor import Dispatch
@@ -33,14 +33,28 @@ class RunPanel(QWidget):
         self.compare_mode.addItem("by difference", "difference")
         self.compare_mode.addItem("side by side", "swipe")
         self.compare_mode.activated.connect(lambda _row: self._compare())
-        layout = QVBoxLayout(self)
-        layout.addWidget(self.starting)
+        self.pages = QTabWidget()
+        self.pages.setAccessibleName("Runs, or a new run")
+        self.pages.setDocumentMode(True)
+        present = QWidget()
+        layout = QVBoxLayout(present)
+        layout.setContentsMargins(0, 4, 0, 0)
         layout.addWidget(self.tree, 1)
         layout.addWidget(self.actions_of_run)
         comparing = QFormLayout()
         comparing.addRow("Compare with", self.compare)
         comparing.addRow("", self.compare_mode)
         layout.addLayout(comparing)
+        new = QWidget()
+        starting = QVBoxLayout(new)
+        starting.setContentsMargins(0, 4, 0, 0)
+        starting.addWidget(self.starting)
+        starting.addStretch(1)
+        self.pages.addTab(new, "New run")
+        self.pages.addTab(present, "Runs")
+        outer = QVBoxLayout(self)
+        outer.addWidget(self.pages)
+        self._shown: str | None = None
 
     def show_status(self, status: ViewStatus) -> None:
         """Show the cases, the devices, the tree of runs and what can be done."""
@@ -48,6 +62,9 @@ class RunPanel(QWidget):
         self.tree.show_status(status)
         self.actions_of_run.show_status(status)
         self._show_comparison(status)
+        if status.shown_run != self._shown:  # another run on the picture is what to look at now
+            self._shown = status.shown_run
+            self.pages.setCurrentIndex(0 if self._shown is None else 1)
 
     def _show_comparison(self, status: ViewStatus) -> None:
         shown = next((row for row in status.runs if row.run == status.shown_run), None)

@@ -30,6 +30,17 @@ def panel(qtbot: QtBot, record: Recorder) -> RunPanel:
     return made
 
 
+def test_a_new_run_is_offered_until_one_is_shown(panel: RunPanel) -> None:
+    assert panel.tree.isVisible()
+    assert not panel.starting.isVisible()
+    panel.show_status(dataclasses.replace(STATUS, shown_run=None))
+    assert panel.starting.isVisible()
+    panel.show_status(STATUS)
+    panel.pages.setCurrentIndex(0)
+    panel.show_status(dataclasses.replace(STATUS, time=10.0))
+    assert panel.starting.isVisible()
+
+
 def test_its_parts_show_the_same_status(panel: RunPanel, record: Recorder) -> None:
     assert panel.starting.case.count() == 2
     assert panel.tree.topLevelItemCount() == 1
