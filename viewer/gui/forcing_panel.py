@@ -36,9 +36,9 @@ class ForcingPanel(QWidget):
         self._list.setSpacing(8)
         layout = QVBoxLayout(self)
         layout.addWidget(self.summary)
+        layout.addWidget(self.recalculate)
         layout.addLayout(self._list)
         layout.addWidget(self.reset)
-        layout.addWidget(self.recalculate)
         layout.addStretch(1)
         layout.setAlignment(Qt.AlignmentFlag.AlignTop)
 

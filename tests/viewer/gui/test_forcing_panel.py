@@ -1,9 +1,11 @@
 import dataclasses
 
 import pytest
+from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
-from tests.viewer.gui.conftest import Recorder
+import protocol
+from tests.viewer.gui.conftest import OpenWindow, Recorder
 from viewer.commands import Recalculate, ResetForcing
 from viewer.gui.forcing_panel import ForcingPanel
 from viewer.view_status import ForcingRow, ViewStatus
@@ -54,3 +56,20 @@ def test_nothing_can_be_changed_without_a_service_or_a_run(panel: ForcingPanel) 
     panel.show_status(ViewStatus())
     assert panel.rows == []
     assert panel.summary.text() == "No run is shown."
+
+
+def test_a_factor_typed_in_the_window_drives_the_branch(opened: OpenWindow) -> None:
+    panel, bot = opened.window.forcing_panel, opened.bot
+    opened.until(lambda: len(panel.rows) == 4)
+    next(dock for dock in opened.window.docks if dock.windowTitle() == "Forcing").raise_()
+    opened.until(panel.rows[0].factor.isVisible)
+    box = panel.rows[0].factor
+    box.setFocus()
+    box.selectAll()
+    bot.keyClicks(box, "2.5")
+    bot.keyClick(box, Qt.Key.Key_Return)
+    opened.until(lambda: "1 changed" in panel.summary.text())
+    bot.mouseClick(panel.recalculate, Qt.MouseButton.LeftButton)
+    opened.until(lambda: opened.app.shown is not None and opened.app.shown.run == "run-2")
+    assert opened.service.runs["run-2"].applied == (protocol.ForcingChange("spring", 2.5),)
+    opened.until(lambda: "is computed with this forcing" in panel.summary.text())
