@@ -195,8 +195,19 @@ def _person(
             client.do(protocol.UnpinRun, run=run)
             for name in reversed(tree):
                 client.ask(protocol.StopRun, run=name)  # refused where it has finished
-                client.do(protocol.DeleteRun, run=name)
+                _delete(client, name)
                 done["deletions"] += 1
+
+
+def _delete(client: ServiceClient, run: str) -> None:
+    """Delete a run, again where the disk is behind.
+
+    Raises:
+        RuntimeError: it was refused for another reason.
+    """
+    while isinstance(answer := client.ask(protocol.DeleteRun, run=run), protocol.Error):
+        if "try again" not in answer.message:
+            raise RuntimeError(f"delete_run was refused: {answer}")
 
 
 def _visitor(

@@ -144,9 +144,11 @@ class RunControl:
             self._supervisor.policy.forget(name)
             try:
                 self._reports.move(run, Move.RESUME)
-            except RunError:  # its rows said that it is finished
+            except RunError:
                 self._supervisor.pool.release(worker)
-                raise
+                if run.status is not RunStatus.FINISHED:
+                    raise
+                return  # its rows have told meanwhile that nothing is left to compute
             self._supervisor.begin(run, worker)
 
     async def stop(self, name: str) -> None:

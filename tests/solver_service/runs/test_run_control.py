@@ -2,7 +2,7 @@ import pytest
 
 from protocol import RunRemoved
 from solver_service.errors import RunError
-from solver_service.runs import Run
+from solver_service.runs import Run, RunStatus
 from solver_service.store import DataFolder, remove_run_files
 from tests.solver_service.runs.conftest import Service
 
@@ -56,6 +56,21 @@ def test_everybody_has_heard_that_a_run_is_gone_before_its_files_go(
     monkeypatch.setattr("solver_service.runs.run_control.remove_run_files", remove)
     service.call(service.registry.control.delete(run.run))
     assert heard == [True], "whoever watches would ask for frames of a run that is not there"
+
+
+def test_a_run_of_which_every_frame_is_stored_is_finished_by_resuming_it(service: Service) -> None:
+    run = start(service)
+    service.wait_for_status(run, RunStatus.FINISHED)
+    service.call(service.registry.supervisor.settle(run))
+    if run.worker is not None:
+        run.worker.kill()
+        service.wait(lambda: run.worker is None)
+    run.status, run.frames = RunStatus.PAUSED, run.frames[:-1]  # as after the death of a service
+    service.call(service.registry.control.resume(run.run))
+    assert run.status is RunStatus.FINISHED
+    assert run.frame_count == run.last_index + 1
+    with pytest.raises(RunError, match="is finished and cannot be resumed"):
+        service.call(service.registry.control.resume(run.run))
 
 
 def test_a_label_and_a_pin_are_told_and_kept(service: Service) -> None:
