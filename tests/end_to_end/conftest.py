@@ -12,7 +12,7 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> str:
     return str(write_dam_break(tmp_path_factory.mktemp("case") / "dam-break"))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def service(tmp_path_factory: pytest.TempPathFactory, case: str) -> Iterator[ServiceProcess]:
     with ServiceProcess(tmp_path_factory.mktemp("data"), cases=[case], threads=2) as service:
         yield service

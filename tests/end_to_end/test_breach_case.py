@@ -60,6 +60,24 @@ def offline(
     return lambda index, scale: protocol.quantise_depth(depths[index], scale, case.params.depth_dry), beds
 
 
+Flood = tuple[Callable[[int, float], np.ndarray], list[np.ndarray]]
+
+
+@pytest.fixture(scope="module")
+def bare_flood(levee_case: Case) -> Flood:
+    """Nobody draws anything."""
+    return offline(levee_case)
+
+
+@pytest.fixture(scope="module")
+def run(service: ServiceProcess) -> str:
+    """A run of the service to its end."""
+    with ServiceClient(service) as client:
+        run = str(client.do(protocol.StartRun, case=FOLDER)["run"])
+        finish(client, run)
+        return run
+
+
 def shown_bed(case: Case, edits: list[EditLine], frame: protocol.DecodedFrame) -> np.ndarray:
     """The ground as a viewer knows it: base, edits, and what the frame says that breaches have lowered."""
     bed = apply_edits(case.z_b, edits, case.grid).z_b.copy()
@@ -80,16 +98,12 @@ def frames(client: ServiceClient, run: str, first: int) -> list[protocol.Decoded
     return [client.decoded[run, index] for index in range(first, LAST + 1)]
 
 
-def start(client: ServiceClient) -> str:
-    run = str(client.do(protocol.StartRun, case=FOLDER)["run"])
-    finish(client, run)
-    return run
-
-
-def test_every_frame_is_that_of_the_solver_alone_bit_for_bit(client: ServiceClient, levee_case: Case) -> None:
-    expected, beds = offline(levee_case)
+def test_every_frame_is_that_of_the_solver_alone_bit_for_bit(
+    client: ServiceClient, levee_case: Case, run: str, bare_flood: Flood
+) -> None:
+    expected, beds = bare_flood
     lowered = []
-    for frame in frames(client, start(client), 0):
+    for frame in frames(client, run, 0):
         np.testing.assert_array_equal(frame.q, expected(frame.index, frame.scale))
         np.testing.assert_array_equal(shown_bed(levee_case, [], frame), beds[frame.index])
         lowered.append(frame.bed_cells.size)
@@ -105,11 +119,11 @@ def series(client: ServiceClient, run: str, from_index: int = 0) -> protocol.Dec
 
 
 def test_gauges_and_sections_come_at_full_rate_in_stretches_over_a_branch_too(
-    client: ServiceClient, levee_case: Case
+    client: ServiceClient, levee_case: Case, run: str
 ) -> None:
-    run = start(client)
     revision = client.do(protocol.AppendEdit, run=run, edit=DIKE)["revision"]
     child = str(client.do(protocol.Recalculate, run=run, index=BEFORE, revision=revision)["run"])
+    client.do(protocol.UndoEdit, run=run)
     finish(client, child)
     for name, edit_at in ((run, None), (child, BEFORE)):
         solver = ShallowWaterSolver(levee_case.model, levee_case.params, "cpu")
@@ -133,17 +147,15 @@ def test_gauges_and_sections_come_at_full_rate_in_stretches_over_a_branch_too(
     assert whole.gauges == tuple(gauge.id for gauge in levee_case.gauges)
 
 
-def test_series_of_frames_that_are_not_computed_yet_are_refused(client: ServiceClient) -> None:
-    run = start(client)
+def test_series_of_frames_that_are_not_computed_yet_are_refused(client: ServiceClient, run: str) -> None:
     with pytest.raises(RuntimeError, match=f"frame {LAST + 1} of run {run} is not computed yet"):
         client.do(protocol.GetSeries, run=run, from_index=LAST + 1)
 
 
 @pytest.mark.parametrize("channel", ["velocity", "maxima"])
 def test_channels_come_over_the_wire_as_they_are_asked_for(
-    client: ServiceClient, levee_case: Case, channel: protocol.ChannelName
+    client: ServiceClient, levee_case: Case, run: str, channel: protocol.ChannelName
 ) -> None:
-    run = start(client)
     client.do(protocol.GetChannel, run=run, index=AFTER, channel=channel)
     received = client.first(protocol.ChannelReceived).channel
     decoded = protocol.decode_channel(BlockLayout(*levee_case.grid.shape), received)
@@ -154,13 +166,12 @@ def test_channels_come_over_the_wire_as_they_are_asked_for(
 
 @pytest.mark.parametrize("index", [BEFORE, AFTER])
 def test_a_branch_before_or_in_the_breach_is_a_run_from_scratch_with_the_edit_then_and_undone_is_the_parent(
-    client: ServiceClient, levee_case: Case, index: int
+    client: ServiceClient, levee_case: Case, run: str, bare_flood: Flood, index: int
 ) -> None:
-    run = start(client)
     revision = client.do(protocol.AppendEdit, run=run, edit=DIKE)["revision"]
     child = str(client.do(protocol.Recalculate, run=run, index=index, revision=revision)["run"])
     finish(client, child)
-    (expected, beds), (unedited, bare) = offline(levee_case, index), offline(levee_case)
+    (expected, beds), (unedited, bare) = offline(levee_case, index), bare_flood
     branch = frames(client, child, index)
     for frame in branch:
         np.testing.assert_array_equal(frame.q, expected(frame.index, frame.scale))

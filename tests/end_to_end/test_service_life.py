@@ -20,6 +20,7 @@ import protocol
 from bench.service_process import ServiceClient, ServiceProcess
 from protocol import BlockLayout
 from tests.end_to_end.dam_break import CELLS, levee
+from tests.end_to_end.patience import patient
 
 LAST = 20
 LAYOUT = BlockLayout(CELLS, CELLS)
@@ -80,7 +81,7 @@ def test_a_service_that_is_asked_to_end_pauses_its_run_and_goes_on_later(tmp_pat
         client.do(protocol.Subscribe, run=run, credit=8)
         client.frame(run, 3)
         service.process.send_signal(signal.SIGTERM)
-        assert service.process.wait(5.0) == 0
+        assert service.process.wait(patient(5.0)) == 0
     with ServiceProcess(tmp_path, cases=[case]) as service, ServiceClient(service) as client:
         info = next(info for info in client.ask(protocol.ListRuns).runs if info.run == run)
         assert info.status == "paused"
@@ -103,10 +104,10 @@ def test_a_service_ends_within_five_seconds_although_a_client_does_not_read(
             begun = time.monotonic()
             if told_by == "SIGTERM":
                 service.process.terminate()
-                service.process.wait(10.0)
+                service.process.wait(60.0)
             else:
-                service.stop(10.0)
-            assert time.monotonic() - begun < 5.0
+                service.stop(60.0)
+            assert time.monotonic() - begun < patient(5.0)
         assert service.process.returncode == 0
 
 
@@ -164,5 +165,5 @@ def test_no_process_outlives_a_service_that_was_killed(tmp_path: Path, case: str
         assert children
         service.process.kill()
         service.process.wait()
-        _, alive = psutil.wait_procs(children, timeout=10.0)
+        _, alive = psutil.wait_procs(children, timeout=60.0)
         assert not alive, "a worker lives on without its service"

@@ -9,7 +9,8 @@ from solver_service.runs import Run, RunStatus
 from tests.end_to_end.dam_break import CELLS, levee
 from tests.solver_service.runs.conftest import Service
 
-DURATION = 400.0
+DURATION = 200.0
+COUNT = 41
 LAYOUT = BlockLayout(CELLS, CELLS)
 
 
@@ -47,8 +48,8 @@ def test_a_parent_resumed_at_once_on_another_worker_has_every_frame_once(service
             service.call(registry.control.resume(root.run))
         for run in (root, child):
             service.wait_for_status(run, RunStatus.FINISHED)
-        assert [frame.index for frame in root.frames] == list(range(81))
-        assert [frame.index for frame in child.frames] == list(range(3, 81))
+        assert [frame.index for frame in root.frames] == list(range(COUNT))
+        assert [frame.index for frame in child.frames] == list(range(3, COUNT))
 
 
 def test_a_child_beside_its_parent_does_not_depend_on_a_state_that_comes_too_late(
@@ -68,5 +69,5 @@ def test_a_child_beside_its_parent_does_not_depend_on_a_state_that_comes_too_lat
         {frame.index: decoder.decode(frame).q for frame in map(peek_frame, packed[run.run])}
         for run, decoder in ((root, FrameDecoder(LAYOUT)), (child, FrameDecoder(LAYOUT)))
     ]
-    assert list(water[1]) == list(range(5, 81))
+    assert list(water[1]) == list(range(5, COUNT))
     assert all(np.array_equal(q, water[0][index]) for index, q in water[1].items())
