@@ -11,7 +11,7 @@ from tests.viewer.render.test_renderer import screen_errors
 from tests.viewer.render.views import BARE, INSIDE, VIEWS, magenta_pixels
 from viewer.lod import BLOCK_SIZES, Border
 from viewer.render import FrameInputs, RenderOptions, WaterFrame, WaterPair
-from viewer.world import Camera
+from viewer.world import Camera, Heightfield
 
 pytestmark = pytest.mark.gl
 
@@ -121,3 +121,30 @@ def test_states_of_the_wire_draw_what_the_viewers_own_classes_draw(
             stats.append((stage.stats.water_triangles, stage.stats.covered_blocks))
         assert np.array_equal(*pictures)
         assert stats[0] == stats[1]
+
+
+def test_round_the_data_there_is_no_wall_and_within_it_the_screen_error_holds(
+    make_heightfield: Callable, make_stage: Callable
+) -> None:
+    hilly = make_heightfield(200, 260)
+    outside = np.zeros(hilly.z_b.shape, np.bool_)
+    outside[:, 120:] = True
+    z = np.where(outside, hilly.z_max + np.float32(100.0), hilly.z_b)
+    field, walled = Heightfield(hilly.grid, z, outside), Heightfield(hilly.grid, z)
+    camera = Camera((-300.0, 20.0, 0.0), 1500.0, -0.6, math.radians(35.0))
+    inputs = FrameInputs(camera, options=RenderOptions(tau_px=3.0, **BARE))
+    triangles = []
+    for ground in (field, walled):
+        stage = make_stage(ground, (400, 225))
+        stage.draw(inputs)
+        triangles.append(stage.stats.terrain_triangles)
+        # Measured against the data alone: pixels beyond it are compared with nothing.
+        truth = Heightfield(hilly.grid, np.where(outside, ground.drawn, hilly.z_b))
+        truth.frame = ground.frame
+        errors = screen_errors(stage, truth, camera)
+        assert errors.size > 10_000
+        assert (errors > 3.0).sum() <= 2
+        truth.drawn = truth.z_b = truth.z_b + np.float32(40.0)
+        assert (screen_errors(stage, truth, camera) > 3.0).mean() > 0.02
+
+    assert triangles[0] < 0.9 * triangles[1]
