@@ -14,6 +14,8 @@ __all__ = ["DepthPlot", "RecordPlot"]
 
 OTHER = (232, 148, 204)
 """Colour of the run that is compared with."""
+LEAST_HIGH = 0.1
+"""The axis reaches at least so far, in the unit shown: dry ground is a line at its foot."""
 Record = tuple[tuple[float, ...], tuple[float, ...]]
 
 
@@ -35,6 +37,7 @@ class RecordPlot(pg.PlotWidget):
         self.setMouseEnabled(False, False)
         self.hideButtons()
         self.setLabel("bottom", "time [min]")
+        self.getAxis("left").enableAutoSIPrefix(False)
         self.showGrid(x=True, y=True, alpha=0.15)
         self.curve = self.plot(pen=pg.mkPen(ACCENT, width=2), fillLevel=0.0, brush=(61, 155, 224, 60))
         self.other = self.plot(pen=pg.mkPen(OTHER, width=2, style=Qt.PenStyle.DashLine))
@@ -51,6 +54,8 @@ class RecordPlot(pg.PlotWidget):
             self._shown = (ours, theirs)
             for curve, (times, values) in ((self.curve, ours), (self.other, theirs)):
                 curve.setData([at / 60.0 for at in times], list(values))
+            highest = max((*ours[1], *theirs[1]), default=0.0)
+            self.setYRange(0.0, max(highest, LEAST_HIGH), padding=0.05)
 
 
 class DepthPlot(QWidget):

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
     QMenu,
     QMessageBox,
     QScrollArea,
-    QVBoxLayout,
+    QToolBar,
     QWidget,
 )
 
@@ -113,13 +113,13 @@ class MainWindow(QMainWindow):
         self.layers_panel = LayersPanel(self._dispatch)
         self.status_line = StatusLine()
         self.setStatusBar(self.status_line)
-        middle = QWidget()
-        layout = QVBoxLayout(middle)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(0)
-        layout.addWidget(self.scene, 1)
-        layout.addWidget(self.playback)
-        self.setCentralWidget(middle)
+        self.setCentralWidget(self.scene)
+        below = QToolBar("Playback", self)
+        below.setObjectName("Playback")
+        below.setMovable(False)
+        below.toggleViewAction().setEnabled(False)  # a flood without its time is not to be had by mistake
+        below.addWidget(self.playback)
+        self.addToolBar(Qt.ToolBarArea.BottomToolBarArea, below)  # as wide as the window, docks and all
         self.docks = [
             self._dock("Runs", self.run_panel, Qt.DockWidgetArea.RightDockWidgetArea),
             self._dock("Terrain edits", self.edit_panel, Qt.DockWidgetArea.RightDockWidgetArea),

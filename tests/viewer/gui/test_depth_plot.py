@@ -1,6 +1,6 @@
 from pytestqt.qtbot import QtBot
 
-from viewer.gui.depth_plot import DepthPlot
+from viewer.gui.depth_plot import DepthPlot, RecordPlot
 from viewer.units import US
 from viewer.view_status import PointReadout, ViewStatus
 
@@ -50,3 +50,15 @@ def test_the_run_compared_with_is_drawn_too_and_all_in_the_units_asked_for(qtbot
     assert list(plot.of_depth.other.getData()[1]) == [0.0, 1.0]
     assert list(plot.of_speed.other.getData()[1]) == [0.0, 1.0]
     assert not plot.of_speed.isHidden()
+
+
+def test_dry_ground_is_a_line_at_the_foot_of_the_plot(qtbot: QtBot) -> None:
+    plot = RecordPlot("depth")
+    qtbot.addWidget(plot)
+    plot.show_records(((0.0, 60.0), (0.0, 0.0)), ((), ()), 0.0, 60.0)
+    low, high = plot.viewRange()[1]
+    assert -0.01 <= low <= 0.0
+    assert 0.1 <= high < 0.2
+    plot.show_records(((0.0, 60.0), (0.0, 8.0)), ((0.0,), (9.0,)), 0.0, 60.0)
+
+    assert 9.0 <= plot.viewRange()[1][1] < 11.0
