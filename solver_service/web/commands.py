@@ -54,7 +54,7 @@ from solver_service.web.quotas import Quotas, owner_of
 
 LISTED = 1000
 LARGE_ANSWERS = 4
-"""Terrains, channels and frames that may be on their way to a client when it asks for another."""
+"""Terrains, pictures, channels and frames that may be on their way to a client when it asks for another."""
 
 EditCommand = AppendEdit | AppendEdits | ReplaceEdit | DeleteEdit | UndoEdit | RedoEdit
 """Commands that change a working list of edits."""
@@ -176,6 +176,7 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
         case GetTerrain():
             await _send_terrain(command, client)
         case GetImagery():
+            _refuse_who_does_not_read(client)
             pictures = await imagery_parts(command, registry)
             client.tell(Ack(command.id))
             client.outbox.put_bulk(packet for part in pictures for packet in client.session.send(part))

@@ -34,7 +34,6 @@ TESTED_ELSEWHERE = {
     "solver_service/runs/worker_messages.py": "tests/end_to_end/test_stream_and_recalculate.py",
     "solver_service/runs/worker_process.py": "tests/end_to_end/test_stream_and_recalculate.py",
     "solver_service/store/records.py": "tests/solver_service/store/test_run_database.py",
-    "solver_service/web/commands.py": "tests/solver_service/web/test_stream.py",
     "solver_service/web/frame_feed.py": "tests/end_to_end/test_flow.py",
     "solver_service/web/server.py": "tests/end_to_end/test_service_life.py",
     "solver_service/web/settings.py": "tests/solver_service/web/test_app.py",

@@ -51,6 +51,13 @@ def test_a_run_is_started_and_watched(rest: httpx.Client) -> None:
     assert rest.get("/v1/status").json()["runs"] >= 1
 
 
+def test_a_run_keeps_the_channels_that_it_is_asked_to(rest: httpx.Client) -> None:
+    asked = (({"channels": ["maxima"]}, ["maxima"]), ({"channels": []}, None), ({}, ["velocity", "maxima"]))
+    for body, kept in asked:
+        run = rest.post("/v1/runs", json={"case": "dam-break", "duration": 5.0, **body}).json()["run"]
+        assert (rest.get(f"/v1/runs/{run}").json().get("channels") or None) == kept
+
+
 @pytest.mark.parametrize(
     ("body", "status"),
     [
@@ -58,6 +65,7 @@ def test_a_run_is_started_and_watched(rest: httpx.Client) -> None:
         ({"case": "../../etc/passwd"}, 409),
         ({"case": "dam-break", "duration": -1.0}, 422),
         ({"case": "dam-break", "output_interval": 0.0}, 422),
+        ({"case": "dam-break", "channels": ["tides"]}, 422),
         ({"case": "dam-break", "device": "tpu"}, 422),
         ({}, 422),
     ],

@@ -18,6 +18,17 @@ def test_control_goes_between_the_parts_of_something_large() -> None:
     assert [first, *drained(outbox)] == [b"part 0", b"ack", b"part 1"]
 
 
+def test_large_things_count_until_their_last_part_is_taken() -> None:
+    outbox = Outbox()
+    outbox.put_bulk([b"a", b"b"])
+    outbox.put_bulk([b"c"])
+    assert outbox.bulk_count == 2
+    assert [outbox.next(), outbox.next(), outbox.next()] == [b"a", b"b", b"c"]
+    assert outbox.bulk_count <= 1
+    assert outbox.next() is None
+    assert outbox.bulk_count == 0
+
+
 def test_too_many_unread_messages_close_the_connection_with_a_reason() -> None:
     outbox = Outbox(max_messages=3)
     outbox.put([b"a", b"b", b"c"])
