@@ -20,7 +20,7 @@ from viewer.view_status import EditSettings
 
 __all__ = ["KeptSettings"]
 
-LAYOUT_VERSION = 3
+LAYOUT_VERSION = 4
 """To be raised when docks are added or renamed; an older layout is then not restored."""
 VIEWS_KEPT = 20
 """Views kept for a terrain at most."""

@@ -57,10 +57,9 @@ from viewer.view_status import ViewStatus
 __all__ = ["MainWindow"]
 
 TICK_MS = 16
-DOCK_WIDTH = 340
+LEFT_WIDTH = 290
+RIGHT_WIDTH = 340
 MAP_MARGIN = 12
-BESIDE = ("Terrain edits", "Forcing")
-"""Docks in one place: what the next branch will differ by."""
 _CURSORS = {
     "measure": Qt.CursorShape.CrossCursor,
     "line": Qt.CursorShape.CrossCursor,
@@ -120,23 +119,21 @@ class MainWindow(QMainWindow):
         below.toggleViewAction().setEnabled(False)  # a flood without its time is not to be had by mistake
         below.addWidget(self.playback)
         self.addToolBar(Qt.ToolBarArea.BottomToolBarArea, below)  # as wide as the window, docks and all
-        self.docks = [
-            self._dock("Runs", self.run_panel, Qt.DockWidgetArea.RightDockWidgetArea),
-            self._dock("Terrain edits", self.edit_panel, Qt.DockWidgetArea.RightDockWidgetArea),
-            self._dock("Depth at a point", self.depth_plot, Qt.DockWidgetArea.RightDockWidgetArea),
-            self._dock("Water", self.water_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
-            self._dock("Layers", self.layers_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
-            self._dock("Forcing", self.forcing_panel, Qt.DockWidgetArea.RightDockWidgetArea),
-            self._dock("Connection", self.connection_panel, Qt.DockWidgetArea.LeftDockWidgetArea),
-        ]
-        edits, forcing = (
-            next(dock for dock in self.docks if dock.windowTitle() == title) for title in BESIDE
-        )
-        self.tabifyDockWidget(edits, forcing)
-        edits.raise_()
-        self.docks[-1].hide()
-        self.resizeDocks(self.docks[:3], [DOCK_WIDTH] * 3, Qt.Orientation.Horizontal)
-        self.resizeDocks(self.docks[:3], [310, 330, 240], Qt.Orientation.Vertical)
+        left, right = Qt.DockWidgetArea.LeftDockWidgetArea, Qt.DockWidgetArea.RightDockWidgetArea
+        runs = self._dock("Runs", self.run_panel, right)
+        edits = self._dock("Terrain edits", self.edit_panel, right)
+        forcing = self._dock("Forcing", self.forcing_panel, right)
+        water = self._dock("Water", self.water_panel, left)
+        layers = self._dock("Layers", self.layers_panel, left)
+        record = self._dock("Depth at a point", self.depth_plot, left)
+        connection = self._dock("Connection", self.connection_panel, left)
+        self.docks = [runs, edits, forcing, water, layers, record, connection]
+        for beside, dock in ((edits, forcing), (layers, connection)):
+            self.tabifyDockWidget(beside, dock)
+            beside.raise_()
+        self.resizeDocks([runs, water], [RIGHT_WIDTH, LEFT_WIDTH], Qt.Orientation.Horizontal)
+        self.resizeDocks([runs, edits], [330, 500], Qt.Orientation.Vertical)
+        self.resizeDocks([water, layers, record], [230, 330, 270], Qt.Orientation.Vertical)
         self.view_menu = ViewMenu(self._dispatch, self._keep_view, self)
         self.view_menu.map_shown.toggled.connect(self.reference_map.setVisible)
         self._make_menus()
