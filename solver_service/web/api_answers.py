@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import msgspec
@@ -72,7 +73,10 @@ def describe(app: FastAPI) -> None:
     @app.exception_handler(HTTPException)
     def tell_refusal(request: Request, error: HTTPException) -> JSONResponse:
         problem = {"code": CODES.get(error.status_code, "refused"), "detail": str(error.detail)}
-        return JSONResponse(problem, error.status_code, error.headers)
+        headers = error.headers
+        if error.status_code == 405:  # a router knows its own methods of an address only
+            headers = {"Allow": ", ".join(_methods(app.openapi()["paths"], request.url.path))}
+        return JSONResponse(problem, error.status_code, headers)
 
     @app.exception_handler(RequestValidationError)
     def tell_what_is_wrong(request: Request, error: RequestValidationError) -> JSONResponse:
@@ -98,6 +102,18 @@ def _schema(app: FastAPI) -> dict[str, Any]:
     for name in ("HTTPValidationError", "ValidationError"):
         kinds.pop(name, None)
     return schema
+
+
+def _methods(paths: dict[str, Any], asked: str) -> list[str]:
+    """The methods of an address."""
+    return sorted(
+        {
+            method.upper()
+            for path, operations in paths.items()
+            if re.fullmatch(re.sub(r"\{[^}]+\}", "[^/]+", path), asked)
+            for method in operations
+        }
+    )
 
 
 def _complete(operation: dict[str, Any]) -> None:

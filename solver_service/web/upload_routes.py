@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, HTTPException, Path, Request
 
+from solver_service.errors import CaseError
 from solver_service.uploads.upload_desk import Sender, UploadDesk
 from solver_service.uploads.upload_record import UploadRecord
 from solver_service.web.api_answers import answers
@@ -24,7 +25,7 @@ BODY = {
         "description": "The archive: a zip of the folder of a case (.fevcase).",
         "content": {
             "application/zip": {
-                "schema": {"type": "string", "format": "binary"},
+                "schema": {"type": "string", "format": "binary", "minLength": 1},
                 "example": "PK (the bytes of river.fevcase)",
             }
         },
@@ -48,12 +49,15 @@ def upload_router(desk: UploadDesk, quotas: Quotas, needs: Callable[[Scope], Any
         status_code=202,
         openapi_extra=BODY,
         response_model=None,
-        responses=answers(UploadRecord, UPLOAD, 409, 413, 429, 507, status=202),
+        responses=answers(UploadRecord, UPLOAD, 409, 413, 422, 429, 507, status=202),
     )
     async def upload_case(request: Request, access: Access = controller) -> dict[str, Any]:
         """Upload a case; the answer comes when all of it has come, and its import goes on."""
+        size = _declared_size(request)
+        if size == 0:
+            raise CaseError("the archive has 0 bytes; a zip of the folder of a case is allowed")
         sender = Sender(owner_of(access), access.label, lambda size: quotas.disk(access, size))
-        record = await desk.receive(request.stream(), _declared_size(request), sender)
+        record = await desk.receive(request.stream(), size, sender)
         return record.facts()
 
     @router.get(

@@ -12,6 +12,7 @@ from schemathesis import GenerationMode
 from bench.service_process import ServiceProcess
 from solver_service.web.scopes import Scope
 from solver_service.web.token_store import TokenStore
+from tests.end_to_end import rest_hooks  # noqa: F401  # its import tells how an archive is sent
 
 EXAMPLES = 3
 ENDLESS = "/v1/events"
@@ -21,11 +22,6 @@ QUICK = settings(
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
-
-
-@schemathesis.serializer("application/zip")
-def as_archive(context: object, value: object) -> bytes:
-    return value if isinstance(value, bytes) else str(value).encode()
 
 
 @pytest.fixture(scope="module")

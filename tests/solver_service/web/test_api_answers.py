@@ -104,4 +104,5 @@ def test_refusals_have_one_form(service: ServiceProcess) -> None:
     for answer in answers:
         assert set(answer.json()) == {"code", "detail"}
         assert isinstance(answer.json()["detail"], str)
+    assert answers[2].headers["allow"] == "GET, POST"
     assert "body case" in answers[3].json()["detail"]
