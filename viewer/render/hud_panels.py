@@ -171,15 +171,20 @@ def nice_length(longest: float) -> float:
 
 
 def scale_panel(
-    metres_per_pixel: float, bearing_deg: float, scale: float, units: Units = METRIC
+    metres_per_pixel: float,
+    bearing_deg: float,
+    scale: float,
+    units: Units = METRIC,
+    contour_interval: float = 0.0,
 ) -> Image.Image:
-    """A scale bar (true at the centre of the picture) and an arrow to the north.
+    """A scale bar (true at the centre of the picture), what contour lines stand for, an arrow to the north.
 
     Args:
         metres_per_pixel: at the point that the camera looks at.
         bearing_deg: compass bearing of the view [degrees].
         scale: size of the panel, 1 for a picture 720 pixels high.
         units: units of the label.
+        contour_interval: height between contour lines [m]; 0 for none.
     """
     margin, longest = round(_MARGIN * scale), 150.0 * scale
     reach = longest * metres_per_pixel
@@ -187,7 +192,10 @@ def scale_panel(
     length = nice_length(reach / unit)
     pixels = round(length * unit / metres_per_pixel)
     label = f"{length:g} {sign}"
-    width, height = round(longest + 70 * scale) + 2 * margin, round(58 * scale)
+    if contour_interval > 0.0:
+        label += f", contours every {contour_interval / units.metre:.3g} {units.length}"
+    room = max(longest, _extent(label, round(15 * scale))[0])
+    width, height = round(room + 70 * scale) + 2 * margin, round(58 * scale)
     image, draw = _plate(width, height)
     y = height - margin - round(4 * scale)
     draw.text((margin, margin - round(3 * scale)), label, font=_font(round(15 * scale)), fill=_INK)

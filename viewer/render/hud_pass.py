@@ -113,7 +113,9 @@ class HudPass:
             self._blit(texture, size, right, size[1] - texture.height - edge - round(66 * scale))
             draws += 1
         if hud.scale_and_north:
-            says_where = (*_scale_and_bearing(inputs.camera, size), scale, inputs.options.units)
+            options = inputs.options
+            where = _scale_and_bearing(inputs.camera, size)
+            says_where = (*where, scale, options.units, options.contour_interval)
             texture = self._panel("scale", says_where, lambda: hud_panels.scale_panel(*says_where))
             self._blit(texture, size, size[0] - texture.width - edge, size[1] - texture.height - edge)
             draws += 1

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from viewer.render import hud_panels
+from viewer.units import METRIC, US
 from viewer.world import DEPTH_SCALE
 
 
@@ -24,6 +25,16 @@ def test_the_scale_bar_is_as_long_as_it_says() -> None:
     longest_run = max(np.diff(np.flatnonzero(np.append(~row, True)), prepend=-1).max() - 1 for row in white)
 
     assert longest_run == pytest.approx(1000.0 / 10.0, abs=3)
+
+
+def test_the_height_between_contour_lines_is_written_in_the_units_chosen() -> None:
+    plain = pixels(hud_panels.scale_panel(10.0, 0.0, 1.0))
+    ten, twenty = (pixels(hud_panels.scale_panel(10.0, 0.0, 1.0, METRIC, m)) for m in (10.0, 20.0))
+    feet = pixels(hud_panels.scale_panel(10.0, 0.0, 1.0, US, 10.0))
+
+    assert ten.shape[1] > plain.shape[1]
+    assert not np.array_equal(ten, twenty)
+    assert feet.shape != ten.shape or not np.array_equal(feet, ten)
 
 
 def test_the_north_arrow_points_against_the_bearing() -> None:
