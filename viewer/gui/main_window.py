@@ -151,7 +151,7 @@ class MainWindow(QMainWindow):
         if self._conductor.advance(time.monotonic()):
             self.scene.update()
         status = self._conductor.status()
-        self.status_line.show_status(status, self.scene.frames_per_second)
+        self.status_line.show_status(status, self.scene.frames_per_second, self.scene.render_scale)
         self._show_map()
         if status is not self._shown:
             if self._shown is None or status.title != self._shown.title:

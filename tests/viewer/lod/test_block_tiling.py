@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from protocol import BlockLayout
-from viewer.lod import BlockTiling, classify_blocks
+from tests.viewer.conftest import hills
+from viewer.lod import BlockTiling, Border, block_errors, classify_blocks, edge_errors
 
 SIZES = [(33, 33), (34, 65), (257, 321), (2, 2), (100, 40), (64, 97)]
 
@@ -81,3 +82,62 @@ def test_depths_are_classified_as_on_the_wire(rng: np.random.Generator) -> None:
 def test_a_tiling_without_triangles_or_of_another_block_size_is_refused(arguments: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match=r"least|not one of"):
         BlockTiling(*arguments)
+
+
+# --- borders -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("block_size", [17, 33, 65])
+@pytest.mark.parametrize("border", list(Border))
+@pytest.mark.parametrize("shape", [(70, 150), (33, 65), (20, 131)])
+def test_blocks_of_any_size_and_border_are_classified_as_their_vertices_are(
+    block_size: int, border: Border, shape: tuple[int, int]
+) -> None:
+    rng = np.random.default_rng(block_size)
+    tiling = BlockTiling(*shape, block_size, border)
+    # Patches of water, so that all three classes come up.
+    coarse = rng.random((-(-shape[0] // 12), -(-shape[1] // 12))) < 0.6
+    h = np.repeat(np.repeat(coarse, 12, axis=0), 12, axis=1)[: shape[0], : shape[1]].astype(np.float32)
+    h[: shape[0] // 2, : 2 * shape[1] // 3] = 1.0
+    states = classify_blocks(h, tiling)
+
+    assert states.shape == (tiling.block_rows, tiling.block_cols)
+    for row in range(tiling.block_rows):
+        for col in range(tiling.block_cols):
+            rows = slice(row * tiling.stride, row * tiling.stride + block_size)
+            wet = h[rows, col * tiling.stride : col * tiling.stride + block_size] > 0.0
+            assert states[row, col] == int(wet.any()) + int(wet.all())
+
+
+@pytest.mark.parametrize("block_size", [17, 33, 65])
+def test_borders_cut_off_fill_up_or_leave_what_fills_no_block(block_size: int) -> None:
+    stride = block_size - 1
+    nrows, ncols = 3 * stride + 1, 2 * stride + 8
+    ragged, trimmed, padded = (BlockTiling(nrows, ncols, block_size, border) for border in Border)
+
+    assert (ragged.drawn_rows, ragged.drawn_cols, ragged.block_cols) == (nrows, ncols, 3)
+    assert (trimmed.drawn_rows, trimmed.drawn_cols, trimmed.block_cols) == (nrows, 2 * stride + 1, 2)
+    assert (padded.drawn_rows, padded.drawn_cols, padded.block_cols) == (nrows, 3 * stride + 1, 3)
+    z = np.arange(nrows * ncols, dtype=np.float32).reshape(nrows, ncols)
+    assert ragged.fitted(z) is z or np.shares_memory(ragged.fitted(z), z)
+    assert np.array_equal(trimmed.fitted(z), z[:, : 2 * stride + 1])
+    assert np.array_equal(padded.fitted(z)[:, ncols:], np.repeat(z[:, -1:], 3 * stride + 1 - ncols, axis=1))
+
+
+def test_a_raster_smaller_than_a_block_is_not_trimmed_away() -> None:
+    tiling = BlockTiling(9, 12, 33, Border.TRIM)
+    assert (tiling.block_count, tiling.drawn_rows, tiling.drawn_cols) == (1, 9, 12)
+    assert tiling.triangle_counts[0].sum() == 2 * 8 * 11
+
+
+@pytest.mark.parametrize("border", [Border.TRIM, Border.PAD])
+def test_errors_are_those_of_the_raster_as_it_is_drawn(border: Border) -> None:
+    z = hills(75, 110, 10.0, 60.0)
+    tiling = BlockTiling(75, 110, 17, border)
+    whole = tiling.fitted(z)
+    plain = BlockTiling(*whole.shape, 17)
+    errors = block_errors(z, tiling)
+
+    assert np.array_equal(errors, block_errors(whole, plain))
+    assert np.array_equal(edge_errors(z, tiling, errors), edge_errors(whole, plain, errors))
+    assert errors.shape[1:] == (tiling.block_rows, tiling.block_cols)
