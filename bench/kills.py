@@ -30,6 +30,7 @@ SMOKE_COUNT = 5
 CASE = "jacksboro"
 DURATION_FRAMES = 40
 LONGEST_WAIT_S = 2.5
+LONGEST_RUN_S = 600.0
 _numbers = itertools.count(1)
 OPTIONS = {"checkpoint_interval_s": 0.1, "restart_attempts": 1000}
 
@@ -130,7 +131,7 @@ def _undisturbed(service: ServiceProcess, case: str) -> dict[int, bytes]:
     with ServiceClient(service) as client:
         run = _start(client, case).run
         client.do(protocol.Subscribe, run=run, credit=8)
-        client.frame(run, DURATION_FRAMES)
+        client.first(protocol.Frame, lambda frame: frame.index == DURATION_FRAMES, timeout_s=LONGEST_RUN_S)
         return stored_frames(client, run)
 
 

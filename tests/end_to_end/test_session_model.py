@@ -1,6 +1,5 @@
 """Commands in any order against the real service: what the one table of moves says is what happens."""
 
-from pathlib import Path
 from typing import Any
 
 import hypothesis.strategies as st
@@ -17,7 +16,7 @@ from hypothesis.stateful import (
 import protocol
 from bench.service_process import ServiceClient, ServiceProcess
 from solver_service.runs.run_status import RULES, Move, RunStatus
-from tests.end_to_end.dam_break import levee
+from tests.end_to_end.dam_break import OUTPUT_INTERVAL, levee
 
 MOVES = {
     protocol.PauseRun: Move.PAUSE,
@@ -33,11 +32,13 @@ PICK = st.integers(0, 1000)
 class Session(RuleBasedStateMachine):
     """The runs that one client made, as it must believe them to be."""
 
-    client: ServiceClient
+    service: ServiceProcess
     case: str
 
     def __init__(self) -> None:
         super().__init__()
+        self.client = ServiceClient(self.service).__enter__()
+        self.labels: dict[str, str] = {}
         self.runs: list[str] = []
         self.edits: dict[str, list[str]] = {}
         self.done: dict[str, list[list[str]]] = {}
@@ -67,7 +68,7 @@ class Session(RuleBasedStateMachine):
     @rule(paused=st.booleans())
     def start(self, paused: bool) -> None:
         self.know(
-            str(self.client.do(protocol.StartRun, case=self.case, duration=400.0, paused=paused)["run"])
+            str(self.client.do(protocol.StartRun, case=self.case, duration=200.0, paused=paused)["run"])
         )
 
     @precondition(lambda self: self.runs)
@@ -210,6 +211,48 @@ class Session(RuleBasedStateMachine):
         self.revision[run] += 1
         assert revision == self.revision[run]
 
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK, label=st.sampled_from(("", "north dike", "\u6c34")))
+    def rename(self, number: int, label: str) -> None:
+        run = self.pick(number)
+        self.client.do(protocol.RenameRun, run=run, label=label)
+        self.labels[run] = label
+
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK, index=st.integers(0, 12))
+    def seek(self, number: int, index: int) -> None:
+        run = self.pick(number)
+        info = self.infos()[run]
+        if index < info.frame_count:
+            owners = [leg.run for leg in info.lineage if leg.first_index <= index]
+            self.client.do(protocol.Subscribe, run=run, from_index=index, mode="replay", credit=2)
+            frame = self.client.first(protocol.Frame, lambda frame: frame.index == index)
+            assert (frame.run, frame.time) == (owners[-1], OUTPUT_INTERVAL * index)
+            self.client.do(protocol.Unsubscribe)
+
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK, is_cut=st.booleans())
+    def reconnect(self, number: int, is_cut: bool) -> None:
+        lost = self.client
+        resume = protocol.ResumePoint(self.pick(number), -1, 0, session_of(lost))
+        if is_cut:
+            lost.cut()
+        self.client = ServiceClient(self.service, resume=resume).__enter__()
+        lost.__exit__(None, None, None)
+
+    @precondition(lambda self: self.runs)
+    @rule(number=PICK, hands_back=st.booleans())
+    def be_overruled(self, number: int, hands_back: bool) -> None:
+        run = self.pick(number)
+        with ServiceClient(self.service) as rival:
+            rival.do(protocol.TakeControl, run=run, force=True)
+            refused = self.client.ask(protocol.AppendEdit, run=run, edit=levee("refused"))
+            assert f"controlled by session {session_of(rival)}" in refused.message
+            if hands_back:
+                rival.do(protocol.ReleaseControl, run=run, to=session_of(self.client))
+        if not hands_back:
+            self.client.do(protocol.TakeControl, run=run, force=True)
+
     @invariant()
     def the_service_says_what_the_model_says(self) -> None:
         infos = self.infos()
@@ -217,6 +260,7 @@ class Session(RuleBasedStateMachine):
             assert infos[run].revision == self.revision[run]
             assert infos[run].forcing_revision == self.forcing[run].revision
             assert infos[run].pinned == (run in self.pinned)
+            assert infos[run].label == self.labels.get(run, "")
 
     def teardown(self) -> None:
         for run in self.runs:
@@ -229,6 +273,12 @@ class Session(RuleBasedStateMachine):
             assert (forced.changes, forced.applied) == (held.changes, held.applied)
         for run in reversed(self.runs):
             self.client.ask(protocol.StopRun, run=run)
+        self.client.__exit__(None, None, None)
+
+
+def session_of(client: ServiceClient) -> str:
+    assert client.session.welcome is not None
+    return client.session.welcome.session
 
 
 def later(status: RunStatus) -> set[RunStatus]:
@@ -239,20 +289,18 @@ def later(status: RunStatus) -> set[RunStatus]:
 
 
 @pytest.mark.slow
-def test_any_order_of_commands_does_what_the_table_of_moves_says(tmp_path: Path, case: str) -> None:
-    with ServiceProcess(tmp_path, cases=[case], threads=2) as service, ServiceClient(service) as client:
+def test_any_order_of_commands_does_what_the_table_of_moves_says(service: ServiceProcess, case: str) -> None:
+    class Model(Session):
+        pass
 
-        class Model(Session):
-            pass
-
-        Model.client, Model.case = client, case
-        run_state_machine_as_test(
-            Model,
-            settings=settings(
-                max_examples=6,
-                stateful_step_count=15,
-                deadline=None,
-                suppress_health_check=list(HealthCheck),
-                database=None,
-            ),
-        )
+    Model.service, Model.case = service, case
+    run_state_machine_as_test(
+        Model,
+        settings=settings(
+            max_examples=5,
+            stateful_step_count=15,
+            deadline=None,
+            suppress_health_check=list(HealthCheck),
+            database=None,
+        ),
+    )
