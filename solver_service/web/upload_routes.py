@@ -25,7 +25,7 @@ BODY = {
         "description": "The archive: a zip of the folder of a case (.fevcase).",
         "content": {
             "application/zip": {
-                "schema": {"type": "string", "format": "binary", "minLength": 1},
+                "schema": {"type": "string", "format": "binary"},
                 "example": "PK (the bytes of river.fevcase)",
             }
         },

@@ -5,8 +5,5 @@ import schemathesis
 
 @schemathesis.serializer("application/zip")
 def as_archive(context: object, value: object) -> bytes:
-    """An archive is its bytes; texts stand for archives that are none, and nothing at all is never sent.
-
-    The generator of binary texts does not care for their least length.
-    """
+    """An archive is its bytes; texts stand for archives that are none, and no archive is sent as nothing."""
     return (value if isinstance(value, bytes) else str(value).encode()) or b"PK"

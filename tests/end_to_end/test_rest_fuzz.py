@@ -19,6 +19,7 @@ ENDLESS = "/v1/events"
 QUICK = settings(
     max_examples=EXAMPLES,
     deadline=None,
+    derandomize=True,
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
