@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from solver_service.errors import StoreError
-from solver_service.store import EditEvent, EditEventKind, FrameRecord, RunDatabase, RunRecord
+from solver_service.store import EditEvent, EditEventKind, ForcingEvent, FrameRecord, RunDatabase, RunRecord
 
 RUN = RunRecord("r1", "case", "f00d", "Title", None, 0, "running", "", 100.0, 5.0, "auto", 0, b"[]", b"{}")
 FRAME = FrameRecord("r1", 0, 0.0, 0, 0, "000001.segment", 0, 10, 1)
@@ -106,3 +106,20 @@ def test_a_file_that_is_no_database_is_refused_in_a_sentence(tmp_path: Path) -> 
     )
     with pytest.raises(StoreError, match=r"runs\.sqlite"):
         RunDatabase(tmp_path / "runs.sqlite")
+
+
+def test_the_working_forcing_is_kept_by_revision_and_goes_with_its_run(tmp_path: Path) -> None:
+    database = opened(tmp_path)
+    database.insert_run(replace(RUN, forcing=b"\x91x"))
+    child = ForcingEvent("r2", 2, b"b")
+    database.insert_run(replace(RUN, run="r2", parent="r1"), (), child)
+    database.append_forcing_event(ForcingEvent("r1", 1, b"a"))
+    database.append_forcing_event(ForcingEvent("r1", 2, b"b"))
+    with pytest.raises(StoreError, match="UNIQUE"):
+        database.append_forcing_event(ForcingEvent("r1", 2, b"c"))
+    assert [event.changes for event in database.forcing_events("r1")] == [b"a", b"b"]
+    assert database.forcing_events("r2") == [child]
+    assert [run.forcing for run in database.runs()] == [b"\x91x", b"\x90"]
+    database.delete_run("r2")
+    assert database.forcing_events("r2") == []
+    database.close()

@@ -53,6 +53,8 @@ def test_a_store_of_the_first_version_gets_the_tables_of_a_new_one_and_keeps_its
     upgraded = RunDatabase(old)
     (run,) = upgraded.runs()
     assert run.channel_names == ()
+    assert run.forcing == b"\x90"
+    assert upgraded.forcing_events("r1") == []
     upgraded.close()
 
     assert (run.run, run.case, run.label, run.pinned, run.owner) == ("r1", "c", "", False, "")
