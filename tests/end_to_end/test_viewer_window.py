@@ -43,7 +43,7 @@ def test_start_watch_draw_recalculate_and_see_the_change(
     window.resize(1000, 640)
     window.show()
     window.activateWindow()
-    panel = window.run_panel
+    panel = window.run_panel.starting
     qtbot.waitUntil(lambda: panel.start.isEnabled() and panel.case.count() > 0, timeout=30_000)
     panel.choose_case(case)
     panel.duration_min.setValue(1.5)
