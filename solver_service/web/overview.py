@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import shutil
 import time
 from collections import Counter, deque
 from collections.abc import Iterable, Mapping, Set
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from solver_service.runs.run_status import ACTIVE
 from solver_service.runs.run_tree import Run
 from solver_service.runs.worker import Worker
 from solver_service.uploads.upload_desk import UploadDesk
+from solver_service.web.gpu_memory import GpuMemory, gpu_memory
 from solver_service.web.stream import StreamConnection
 from solver_service.web.version import server_version
 
@@ -82,6 +84,7 @@ class OverviewSource:
     recent: Recent = field(default_factory=Recent)
     _sizes: Mapping[str, int] = field(default_factory=dict)
     _sizes_at: float = -1e9
+    _gpus: list[GpuMemory] = field(default_factory=list)
     _sent: dict[str, tuple[float, int]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -95,11 +98,13 @@ class OverviewSource:
             for stored in await self.registry.stored_bytes():
                 sizes[stored.run] += stored.size
             self._sizes, self._sizes_at = sizes, now
+            self._gpus = await asyncio.to_thread(gpu_memory)
         workers = self.registry.pool.workers
         return {
             "service": {"service": self._service(workers)},
             "runs": {run.run: self._run(run) for run in self._newest_runs()},
             "devices": self._devices(workers),
+            "gpus": {str(gpu.index): asdict(gpu) for gpu in self._gpus},
             "workers": {str(worker.number): _worker_row(worker) for worker in workers},
             "connections": self._streams(now),
             "uploads": {record.upload: record.facts() for record in self.desk.uploads},

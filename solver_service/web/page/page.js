@@ -3,7 +3,7 @@
 "use strict";
 
 const KEY = "fev-token";
-const SECTIONS = ["service", "runs", "devices", "workers", "connections", "uploads", "events"];
+const SECTIONS = ["service", "runs", "devices", "gpus", "workers", "connections", "uploads", "events"];
 const STALE_MS = 25000;
 let known = empty();
 let token = sessionStorage.getItem(KEY) || "";
@@ -220,6 +220,9 @@ function glance() {
     tile("Memory", bytes(ours), `machine: ${bytes(taken)} of ${bytes(facts.machine_memory_bytes)} used`, taken / facts.machine_memory_bytes),
     tile("Store", bytes(kept), facts.store_bytes ? `budget ${bytes(facts.store_bytes)}` : "no budget", facts.store_bytes ? facts.stored_bytes / facts.store_bytes : undefined),
     tile("Disk", `${bytes(facts.disk_free_bytes)} free`, `of ${bytes(facts.disk_bytes)}`, used / facts.disk_bytes),
+    ...[...known.gpus.values()].map((gpu) => tile(
+      `GPU ${gpu.index}`, bytes(gpu.used_bytes), `of ${bytes(gpu.total_bytes)}, ${gpu.name}`, gpu.used_bytes / gpu.total_bytes,
+    )),
     tile("Up for", age(facts.since), `version ${facts.version}, process ${facts.pid}`),
   );
 }

@@ -41,13 +41,9 @@ def test_a_folder_is_sent_without_what_is_no_case_and_is_then_on_offer(
     files = receiver.data_dir / "cases" / "tiny" / "case"
     assert sorted(path.name for path in files.iterdir()) == ["bed.npz", "case.toml"]
 
-    again = fev_solver("upload", case / "case.toml", *words)
-    assert again.code == 2
-    assert "offered already" in again.err
-
     (case / "bed.npz").write_bytes(b"PK\3\4 broken")
     (case / "notes.docx").unlink()
-    broken = fev_solver("upload", case, *words)
+    broken = fev_solver("upload", case / "case.toml", *words)
     assert broken.code == 2
     assert "bed.npz" in broken.err
     assert str(receiver.data_dir) not in broken.err

@@ -27,7 +27,9 @@ attempt("pair", lambda: socket.socketpair())
 attempt("program", lambda: os.execv("/bin/true", ["true"]))
 attempt("fork", os.fork)
 import threading
-threading.Thread(target=lambda: print("thread done", flush=True)).start()
+thread = threading.Thread(target=lambda: print("thread done", flush=True))
+thread.start()
+thread.join()
 attempt("child", lambda: subprocess.run(["/bin/true"]))
 attempt("signal", lambda: os.kill(os.getppid(), 0))
 """

@@ -99,13 +99,6 @@ def test_a_case_is_offered_survives_a_restart_and_is_removed(tmp_path: Path) -> 
             asyncio.run(desk.remove("jacksboro"))
 
 
-def test_a_name_of_an_embedded_case_is_refused(tmp_path: Path) -> None:
-    with opened(tmp_path / "data") as desk:
-        record = asyncio.run(sent(desk, tiny(tmp_path, "jacksboro")))
-    assert record.status == "refused"
-    assert "offered already" in record.message
-
-
 def test_what_is_refused_leaves_nothing(tmp_path: Path) -> None:
     with opened(tmp_path / "data") as desk:
         record = asyncio.run(sent(desk, b"this is no archive"))

@@ -34,7 +34,7 @@ def runs(service: ServiceProcess) -> Iterator[tuple[ServiceClient, str, str]]:
         yield viewer, parent, child
     headers = {"Authorization": f"Bearer {service.token}"}
     for run in (child, parent):
-        assert httpx.post(f"{service.http}/v1/runs/{run}/stop", headers=headers).status_code == 204
+        httpx.post(f"{service.http}/v1/runs/{run}/stop", headers=headers)
 
 
 @pytest.fixture(scope="module")
@@ -115,6 +115,23 @@ def test_runs_are_shown_as_a_tree_with_their_facts_and_names_stay_text(
 
 
 @browser
+def test_the_memory_of_a_gpu_has_a_tile_of_its_own(page: Browser) -> None:
+    gpu = {
+        "index": 0,
+        "name": "A <b>big</b> one",
+        "used_bytes": 12_000_000_000,
+        "total_bytes": 140_000_000_000,
+    }
+    news = {"set": {"gpus": {"0": gpu}}, "gone": {}}
+    told = "[...document.querySelectorAll('#glance > div')].map((tile) => tile.innerText).join()"
+    assert "GPU" not in page.value(told)
+    shown = page.value(f"take('overview', {json.dumps(json.dumps(news))}), {told}")
+    assert re.search(r"GPU 0\s+12.GB\s+of 140.GB, A <b>big</b> one", shown), shown
+    page.value(f"take('overview', {json.dumps(json.dumps({'set': {}, 'gone': {'gpus': ['0']}}))})")
+    assert "GPU" not in page.value(told)
+
+
+@browser
 def test_an_action_asks_first_and_then_acts(
     service: ServiceProcess, page: Browser, runs: tuple[ServiceClient, str, str]
 ) -> None:
@@ -138,6 +155,10 @@ def test_an_action_asks_first_and_then_acts(
     page.until("document.getElementById('answer').textContent.endsWith('pause: done')")
     page.click(f"tr[data-id={child}] [data-action=resume]")
     page.until(f"document.querySelector('tr[data-id={child}] .badge').textContent === 'running'")
+    page.click(f"tr[data-id={child}] [data-action=stop]")
+    page.click("#confirm-yes")
+    page.until(f"document.querySelector('tr[data-id={child}] .badge').textContent === 'stopped'")
+    assert status() == "stopped"
 
 
 @browser
