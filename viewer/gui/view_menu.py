@@ -20,8 +20,6 @@ TAUS_PX = (0.5, 1.0, 2.0, 4.0, 8.0)
 CONTOUR_INTERVALS_M = (0.0, 5.0, 10.0, 20.0, 50.0)
 BLOCK_SIZES = (17.0, 33.0, 65.0)
 BORDERS = {"ragged": "Ragged blocks", "trim": "Trim", "pad": "Pad"}
-SUN_BEARINGS = ("North", "North-east", "East", "South-east", "South", "South-west", "West", "North-west")
-SUN_HEIGHTS_DEG = (10.0, 20.0, 30.0, 42.0, 60.0, 80.0)
 UNIT_NAMES = {"metric": "Metric", "us": "US customary"}
 NUMBERED_VIEWS = 9
 
@@ -52,14 +50,6 @@ class ViewMenu(QMenu):
         self._choice(
             "Contours", "contour_interval", CONTOUR_INTERVALS_M, 0.0, lambda v: f"{v:g} m" if v else "off"
         )
-        bearings = tuple(45.0 * number for number in range(len(SUN_BEARINGS)))
-        self._choice(
-            "Sun from", "light_azimuth_deg", bearings, 315.0, lambda v: SUN_BEARINGS[int(float(v) / 45.0)]
-        )
-        self._choice("Sun height", "light_elevation_deg", SUN_HEIGHTS_DEG, 42.0, lambda v: f"{v:g} deg")
-        self._choice("Units", "units", tuple(UNIT_NAMES), "metric", lambda v: UNIT_NAMES[str(v)])
-        self._switch("Imagery", "show_imagery", None, checked=True)
-        self.addSeparator()
         self._choice("Terrain error", "tau_px", TAUS_PX, 2.0, lambda v: f"{v:g} px")
         self._choice("Vertices along a block", "block_size", BLOCK_SIZES, 33.0, lambda v: f"{v:g}")
         self._choice("Border of the map", "border", tuple(BORDERS), "ragged", lambda v: BORDERS[str(v)])
@@ -125,10 +115,9 @@ class ViewMenu(QMenu):
         action.triggered.connect(lambda: slot())
         return action
 
-    def _switch(self, text: str, option: str, shortcut: str | None, checked: bool = False) -> None:
+    def _switch(self, text: str, option: str, shortcut: str | None) -> None:
         action = self._action(text, shortcut, lambda: None)
         action.setCheckable(True)
-        action.setChecked(checked)
         action.toggled.connect(lambda on: self._dispatch(SetOption(option, on)))
         self._switches[option] = action
 
