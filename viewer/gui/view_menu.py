@@ -50,6 +50,8 @@ class ViewMenu(QMenu):
         self._choice(
             "Contours", "contour_interval", CONTOUR_INTERVALS_M, 0.0, lambda v: f"{v:g} m" if v else "off"
         )
+        self._choice("Units", "units", tuple(UNIT_NAMES), "metric", lambda v: UNIT_NAMES[str(v)])
+        self.addSeparator()
         self._choice("Terrain error", "tau_px", TAUS_PX, 2.0, lambda v: f"{v:g} px")
         self._choice("Vertices along a block", "block_size", BLOCK_SIZES, 33.0, lambda v: f"{v:g}")
         self._choice("Border of the map", "border", tuple(BORDERS), "ragged", lambda v: BORDERS[str(v)])
