@@ -17,7 +17,7 @@ def data_dir(tmp_path: Path) -> Path:
 
 def damage(data_dir: Path) -> None:
     segment = sorted((data_dir / "frames" / "r1").glob("*.segment"))[7]
-    segment.write_bytes(segment.read_bytes()[:-1])
+    segment.write_bytes(b"\xff" + segment.read_bytes()[1:])  # its frame comes first, channels behind it
 
 
 def test_check_tells_what_is_wrong_and_repair_mends_it(
