@@ -66,12 +66,7 @@ def figures(smoke: bool) -> Iterator[dict[str, object]]:
     size = SMOKE if smoke else FULL
     with tempfile.TemporaryDirectory(prefix="fev-viewers-") as folder:
         case = write_slosh_case(Path(folder) / "slosh", size.side, size.side, 1e6, 2.0)
-        options: dict[str, Any] = {
-            "cases": [str(case)],
-            "threads": 1,
-            "spare_workers": 0,
-            "checkpoint_interval_s": 3600.0,
-        }
+        options: dict[str, Any] = {"threads": 1, "spare_workers": 0, "checkpoint_interval_s": 3600.0}
         with (
             ServiceProcess(Path(folder) / "data", cases=[str(case)], **options) as service,
             ServiceClient(service, grants_credit=False) as client,
