@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -55,7 +56,16 @@ class Browser:
             stderr=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             text=True,
+            start_new_session=True,  # the program may be a script that starts the browser
         )
+        try:
+            self._connect()
+        except BaseException:
+            self._end()
+            raise
+        return self
+
+    def _connect(self) -> None:
         assert self._process.stderr is not None
         address = next(found[1] for line in self._process.stderr if (found := ADDRESS.search(line)))
         self._socket = connect(address, max_size=64 << 20, compression=None).__enter__()
@@ -73,14 +83,17 @@ class Browser:
         )
         scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
         self.do("Emulation.setEmulatedMedia", features=scheme)
-        return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._socket.close()
-        self._process.terminate()
-        self._process.wait(10.0)
+        self._end()
+
+    def _end(self) -> None:
+        if hasattr(self, "_socket"):
+            self._socket.close()
+        os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
         assert self._process.stderr is not None
         self._process.stderr.close()
         shutil.rmtree(self._folder, ignore_errors=True)
