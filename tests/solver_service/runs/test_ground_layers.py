@@ -26,5 +26,7 @@ def test_a_case_has_the_pictures_that_it_brings_and_they_are_kept_by_its_bed(tmp
     assert layers_of(case) == ("imagery", "walls")
     kept = sorted(path.name for path in (folder.root / "terrain").iterdir())
     assert kept == ["f00d.imagery", "f00d.walls"]
-    assert Image.open(folder.layer("f00d", "walls")).size == (plain.grid.ncols, plain.grid.nrows)
-    assert Image.open(folder.layer("f00d", "imagery")).format == "JPEG"
+    with Image.open(folder.layer("f00d", "walls")) as walls:
+        assert walls.size == (plain.grid.ncols, plain.grid.nrows)
+    with Image.open(folder.layer("f00d", "imagery")) as imagery:
+        assert imagery.format == "JPEG"

@@ -33,7 +33,11 @@ def other_pixels(first: np.ndarray, second: np.ndarray) -> float:
 
 
 def kept() -> dict[str, np.ndarray]:
-    return {path.stem: np.asarray(Image.open(path)) for path in sorted(FOLDER.glob("*.png"))}
+    pictures_kept = {}
+    for path in sorted(FOLDER.glob("*.png")):
+        with Image.open(path) as picture:
+            pictures_kept[path.stem] = np.asarray(picture)
+    return pictures_kept
 
 
 @pytest.fixture(scope="module")
