@@ -76,7 +76,6 @@ class BlockSelector:
         *,
         states: npt.NDArray[np.uint8] | None = None,
         depth_max: float = 0.0,
-        pinned: npt.NDArray[np.bool_] | None = None,
         water_spacing_px: float = 0.0,
         partial_spacing_px: float = 0.0,
         cull: bool = True,
@@ -95,7 +94,6 @@ class BlockSelector:
             states: water state of each block (0 dry, 1 partial, 2 wet), shape [block_count]; None for no
                 water.
             depth_max: deepest water anywhere [m]; boxes of blocks with water reach that much higher.
-            pinned: blocks held at full resolution (edited, errors not refreshed yet), shape [block_count].
             water_spacing_px: spacing of vertices allowed in fully wet blocks [pixels]; 0 draws all vertices.
             partial_spacing_px: the same for partial blocks.
             cull: whether to leave out blocks outside of the view.
@@ -130,8 +128,6 @@ class BlockSelector:
                 for state, spacing in ((PARTIAL, partial_spacing_px), (WET, water_spacing_px)):
                     of_state = states[at] == state
                     level[of_state] = self._spacing_levels(distance[of_state], slope_px, spacing)
-            if pinned is not None:
-                level[pinned[at]] = 0
 
         visible = np.ones(distance.shape, dtype=np.bool_)
         if frustum is not None:

@@ -38,7 +38,11 @@ class TerrainLod:
         self._edits: EditOverlay | None = None
 
     def refresh(self, dirty: Rect) -> None:
-        """Redo the errors and bounds of the blocks that hold a vertex of a rectangle of cells."""
+        """Redo the errors and bounds of the blocks that hold a vertex of a rectangle of cells.
+
+        Done before the next picture, so that no block is ever drawn coarser than its ground allows, and an
+        edited block has its level of detail as any other.
+        """
         tiling = self.tiling
         first_row, first_col, end_row, end_col = tiling.blocks_touching(dirty)
         if first_row >= end_row or first_col >= end_col:
@@ -63,7 +67,7 @@ class TerrainLod:
         self._selector.refresh()
 
     def follow_edits(self, edits: EditOverlay | None) -> None:
-        """Note which blocks hold an edited vertex: they are drawn at full resolution."""
+        """Note which blocks hold an edited vertex: their ground may stand out of the water."""
         if same_marks(edits, self._edits):
             return
         self._edits, self._edited = edits, None
@@ -90,7 +94,6 @@ class TerrainLod:
             options.tau_px,
             states=states,
             depth_max=depth_max,
-            pinned=self._edited,
             water_spacing_px=options.water_spacing_px,
             partial_spacing_px=options.partial_spacing_px,
             cull=options.cull,

@@ -168,17 +168,6 @@ def test_covered_terrain_is_drawn_on_request(scene: Scene) -> None:
     assert selection.stats.terrain_blocks == scene.tiling.block_count
 
 
-def test_pinned_blocks_are_at_full_resolution(scene: Scene) -> None:
-    pinned = np.zeros(scene.tiling.block_count, dtype=bool)
-    pinned[[5, 6]] = True
-    free = scene.selector.select(CAMERAS[0], scene.field.frame, SIZE, 8.0)
-    held = scene.selector.select(CAMERAS[0], scene.field.frame, SIZE, 8.0, pinned=pinned)
-
-    assert (free.level[pinned] > 0).all()
-    assert (held.level[pinned] == 0).all()
-    assert np.array_equal(free.level[~pinned], held.level[~pinned])
-
-
 def test_wet_blocks_are_spaced_as_the_screen_asks(scene: Scene) -> None:
     states = np.full(scene.tiling.block_count, 2, dtype=np.uint8)
     camera = CAMERAS[0]
@@ -255,7 +244,6 @@ def test_the_quadtree_selects_what_looking_at_every_block_selects(seed: int) -> 
         options: dict[str, object] = {
             "states": rng.integers(0, 3, count).astype(np.uint8) if rng.random() < 0.7 else None,
             "depth_max": 40.0,
-            "pinned": rng.random(count) < 0.1,
             "water_spacing_px": float(rng.choice([0.0, 3.0])),
             "cull_covered_terrain": bool(rng.random() < 0.7),
             "classify_water": bool(rng.random() < 0.8),
