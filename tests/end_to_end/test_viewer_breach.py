@@ -9,7 +9,7 @@ import pytest
 from viewer.app.headless import HeadlessSession
 from viewer.app.local_service import LocalService
 from viewer.app.viewer_app import ViewerApp
-from viewer.commands import FlyTo, Pause, ProbeAt, Seek, StartRun
+from viewer.commands import FlyTo, Pause, ProbeAt, Seek, SetOption, StartRun
 from viewer.net import ConnectionThread, FrameLoader
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "levee_breach"
@@ -88,3 +88,37 @@ def test_between_two_frames_the_gap_is_deeper_than_before_and_shallower_than_aft
 
     assert grounds == sorted(grounds, reverse=True)
     assert grounds[0] > grounds[2] > grounds[4]
+
+
+def test_channels_of_the_service_colour_the_water_and_answer_the_probe(session: HeadlessSession) -> None:
+    at(session, OPEN)
+    app = session.app
+    look = app.water.look
+    app.carry_out(SetOption("water_colour", "speed"))
+    session.pump(lambda: look.colouring is not None and look.note == "", "velocity", 20.0)
+    session.pump(
+        lambda: (now := app.fresh_status().probe) is not None and now.speed is not None, "speed", 20.0
+    )
+    probe, colouring, pair = app.fresh_status().probe, look.colouring, app.feed.pair
+    assert probe is not None
+    assert colouring is not None
+    assert pair is not None
+    speed = colouring.fields[0].values
+    row, col = int(GAP[1] // 10.0), int(GAP[0] // 10.0)
+
+    assert probe.speed == pytest.approx(float(speed[row, col]), abs=1e-6)
+    assert probe.speed > 0.2
+    assert probe.bearing == pytest.approx(90.0, abs=60.0)  # from the river into the valley
+    assert not speed[pair.first.h == 0.0].any()
+
+    at(session, 1200.0)
+    app.carry_out(SetOption("water_colour", "max_depth"))
+    session.pump(lambda: look.colouring is not None and look.note == "", "maxima", 20.0)
+    pair = app.feed.pair
+    assert pair is not None
+    assert look.colouring is not None
+    deepest = look.colouring.fields[0].values
+    wet = pair.first.h > 0.0
+    assert (deepest[wet] >= pair.first.h[wet] - 0.01).all()
+    assert (deepest > pair.first.h + 0.05).any()
+    app.carry_out(SetOption("water_colour", "natural"))

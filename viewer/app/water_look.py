@@ -134,6 +134,9 @@ class WaterLook:
             return None
         if maxima.key != key:
             self.note = f"Maxima are on their way; the picture has those until {time_text(maxima.time)}."
+        elif maxima.index < key[1]:
+            until = time_text(maxima.time)
+            self.note = f"This run keeps maxima with some frames only; these are those until {until}."
         name = _FIELDS[colour]
         return Colouring(colour, scale, (CellField((*maxima.key, name), maxima.fields[name]),))
 
