@@ -24,6 +24,7 @@ from solver_service.runs.edit_desk import EditDesk
 from solver_service.runs.forcing_desk import ForcingDesk
 from solver_service.runs.housekeeper import Housekeeper, RoomRules
 from solver_service.runs.presentations import Presentations
+from solver_service.runs.recent_frames import RecentFrames
 from solver_service.runs.restart_policy import RestartPolicy
 from solver_service.runs.run_control import RunControl
 from solver_service.runs.run_reports import RunReports
@@ -110,6 +111,7 @@ class RunRegistry:
         self._folder.lock()
         self._store = StoreThread(self._folder)
         self._reader = FrameReader(self._folder)
+        self._recent = RecentFrames(self._read_frame)
         self._worker_settings = WorkerSettings(
             data_dir, 0, ring_bytes, checkpoint_interval_s, threads, device, log_format, log_level
         )
@@ -223,11 +225,14 @@ class RunRegistry:
         return self.supervisor.pool
 
     async def read_frame(self, record: FrameRecord) -> bytes:
-        """The packed bytes of a frame, read away from the event loop.
+        """The packed bytes of a frame, read away from the event loop and once for all who want it.
 
         Raises:
             StoreError: they are missing or damaged.
         """
+        return await self._recent.get(record)
+
+    async def _read_frame(self, record: FrameRecord) -> bytes:
         try:
             return await asyncio.to_thread(self._reader.read, record)
         except StoreError:  # it may have moved to another segment since the row was read
