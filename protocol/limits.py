@@ -48,6 +48,12 @@ MAX_SERIES_BYTES = 64 << 20
 MAX_SERIES_PLACES = MAX_ARRAY_LENGTH
 """Most gauges, and most sections, of a series."""
 
+MAX_PLACES = 256
+"""Most gauges, and most sections, that a client is told the places of."""
+
+MAX_PLACE_POINTS = 128
+"""Most vertices of a section that a client is told; longer ones are thinned."""
+
 MAX_PARTS = MAX_CHANNEL_BYTES // PART_BYTES + 1
 """Largest number of parts of one frame, terrain or channel."""
 

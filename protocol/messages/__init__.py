@@ -25,6 +25,7 @@ from protocol.messages.forcing import ChangeForcing, ForcingChanged
 from protocol.messages.frames import Frame, FramePart
 from protocol.messages.handshake import Hello, ResumePoint, Welcome, WireLimits
 from protocol.messages.imagery import GetImagery, ImageryPart, Layer
+from protocol.messages.places import GaugePlace, Places, SectionPlace
 from protocol.messages.presenting import PresentView, View, ViewPresented
 from protocol.messages.runs import (
     DeleteRun,
@@ -96,6 +97,7 @@ ServerMessage = (
     | ImageryPart
     | EditsChanged
     | ForcingChanged
+    | Places
     | Frame
     | FramePart
     | Progress
@@ -129,6 +131,7 @@ __all__ = [
     "ForcingChanged",
     "Frame",
     "FramePart",
+    "GaugePlace",
     "GetChannel",
     "GetImagery",
     "GetSeries",
@@ -144,6 +147,7 @@ __all__ = [
     "Notice",
     "PauseRun",
     "PinRun",
+    "Places",
     "PresentView",
     "Progress",
     "Recalculate",
@@ -159,6 +163,7 @@ __all__ = [
     "RunList",
     "RunRemoved",
     "RunStatus",
+    "SectionPlace",
     "Seek",
     "Series",
     "ServerMessage",

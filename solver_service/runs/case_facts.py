@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from protocol import ForcingItem, GridInfo, Layer
+from protocol import ForcingItem, GaugePlace, GridInfo, Layer, SectionPlace
 
 
 class CaseFacts(msgspec.Struct, frozen=True):
@@ -19,6 +19,8 @@ class CaseFacts(msgspec.Struct, frozen=True):
         start_time: clock time of frame 0, ISO 8601 with offset.
         forcing: what drives it from outside.
         layers: pictures of its terrain.
+        gauges: where its gauges are.
+        sections: where its sections are.
     """
 
     grid: GridInfo
@@ -29,6 +31,8 @@ class CaseFacts(msgspec.Struct, frozen=True):
     start_time: str | None = None
     forcing: tuple[ForcingItem, ...] = ()
     layers: tuple[Layer, ...] = ()
+    gauges: tuple[GaugePlace, ...] = ()
+    sections: tuple[SectionPlace, ...] = ()
 
     def pack(self) -> bytes:
         """The stored form."""

@@ -26,6 +26,7 @@ from solver_service.runs.placement import LocalPlacement, Placement
 from solver_service.scenario import Case, load_case
 from solver_service.scenario.forced_model import ForcedFrom, forced_model, stretches
 from solver_service.scenario.forcing_items import forcing_items
+from solver_service.scenario.told_places import gauge_places, section_places
 from solver_service.store import StoredState
 
 Course = tuple[ForcedFrom, ...]
@@ -73,6 +74,8 @@ class Computation:
             start_time=self.case.start_time,
             forcing=forcing_items(self.case),
             layers=layers_of(self.case),
+            gauges=gauge_places(self.case),
+            sections=section_places(self.case),
         )
 
     @property

@@ -8,7 +8,7 @@ import secrets
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from protocol import EditLog, LineageEntry, RunInfo
+from protocol import EditLog, LineageEntry, Places, RunInfo
 from solver_service.errors import RunError
 from solver_service.runs.case_facts import CaseFacts
 from solver_service.runs.channels import kept_channels
@@ -140,6 +140,12 @@ class RunTree:
     def branch_parent(self, name: str, index: int) -> Run:
         """The run whose state a branch of `name` at `index` takes."""
         return self.get(branch_point(self.legs(name), index).run)
+
+    def places(self, name: str) -> tuple[Places, ...]:
+        """What viewers are told of a run's gauges and sections; nothing where it has none."""
+        facts = self.get(name).facts
+        has_any = bool(facts.gauges or facts.sections)
+        return (Places(name, facts.gauges, facts.sections),) if has_any else ()
 
     def info(self, run: Run) -> RunInfo:
         """What viewers are told of a run."""

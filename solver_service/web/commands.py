@@ -188,6 +188,8 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
                 client.tell(RunChanged(registry.tree.info(registry.tree.get(command.run))))
                 client.tell(registry.edits.changed(command.run))
                 client.tell(registry.forcing.changed(command.run))
+                for places in registry.tree.places(command.run):
+                    client.tell(places)
                 client.tell(registry.controllers.of(command.run))
         case Unsubscribe():
             client.tell(Ack(command.id))
@@ -216,6 +218,8 @@ async def carry_out(command: Command, client: Client, access: Access) -> None:
             if watched == command.run:
                 client.feed.move_to(child.run, command.index)
                 client.tell(registry.forcing.changed(child.run))
+                for places in registry.tree.places(child.run):
+                    client.tell(places)
 
 
 async def _edit(command: EditCommand, registry: RunRegistry) -> int:

@@ -337,6 +337,8 @@ class StreamConnection:
             self.tell(RunChanged(self.registry.tree.info(run)))
             self.tell(self.registry.edits.changed(run.run))
             self.tell(self.registry.forcing.changed(run.run))
+            for places in self.registry.tree.places(run.run):
+                self.tell(places)
         if hello.resume is not None and hello.resume.session is not None:
             self._replace(hello.resume.session)
 

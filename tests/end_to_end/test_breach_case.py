@@ -147,6 +147,18 @@ def test_gauges_and_sections_come_at_full_rate_in_stretches_over_a_branch_too(
     assert whole.gauges == tuple(gauge.id for gauge in levee_case.gauges)
 
 
+def test_whoever_watches_is_told_where_gauges_and_sections_are(client: ServiceClient, run: str) -> None:
+    client.do(protocol.Subscribe, run=run, from_index=0, mode="replay", credit=1)
+    places = client.first(protocol.Places)
+
+    assert places.run == run
+    assert [(gauge.id, gauge.x, gauge.y) for gauge in places.gauges] == [
+        ("town", 305.0, 205.0),
+        ("river", 45.0, 205.0),
+    ]
+    assert places.sections[0].line == ((230.0, 0.0), (230.0, 400.0))
+
+
 def test_series_of_frames_that_are_not_computed_yet_are_refused(client: ServiceClient, run: str) -> None:
     with pytest.raises(RuntimeError, match=f"frame {LAST + 1} of run {run} is not computed yet"):
         client.do(protocol.GetSeries, run=run, from_index=LAST + 1)

@@ -213,6 +213,11 @@ SERVER_EXAMPLES: dict[str, Message] = {
         moved={"culvert": 12.5},
     ),
     "forcing_changed": p.ForcingChanged("r-1", 2, CHANGES, CHANGES[:1], ITEMS),
+    "places": p.Places(
+        "r-1",
+        (p.GaugePlace("town", 740_305.0, 4_014_205.0),),
+        (p.SectionPlace("behind the levee", ((740_230.0, 4_014_000.0), (740_230.0, 4_014_400.0))),),
+    ),
     "run_removed": p.RunRemoved("r-2"),
     "control_changed": p.ControlChanged("r-1", "c0ffee", "fev-viewer 0.1.0"),
     "control_requested": p.ControlRequested("r-1", "decaf", "fev-viewer 0.1.0"),
