@@ -13,6 +13,7 @@ __all__ = [
     "EditSettings",
     "ForcingRow",
     "LegendRow",
+    "PlaceRow",
     "PointReadout",
     "PresenterRow",
     "RunRow",
@@ -44,6 +45,19 @@ def clock_text(start_time: str | None, seconds: float) -> str:
     except (ValueError, OverflowError):
         return ""  # a service of another version may write it otherwise; no clock is better than a wrong one
     return clock.strftime("%Y-%m-%d %H:%M:%S %z").strip()
+
+
+@dataclass(frozen=True)
+class PlaceRow:
+    """A gauge or section of the shown run.
+
+    Attributes:
+        id: its name.
+        kind: "gauge" or "section".
+    """
+
+    id: str
+    kind: str
 
 
 @dataclass(frozen=True)
@@ -242,6 +256,10 @@ class ViewStatus:
         recalculate_latency_s: from the last Recalculate to its first changed frame on the picture [s].
         depth_record: (times [s], depths [m]) at the probed point, frames loaded so far.
         speed_record: (times [s], speeds [m/s]) there, as far as velocity has come.
+        discharge_record: (times [s], discharges [m3/s]) of the chosen section.
+        places: gauges and sections of the shown run.
+        series_of: the one whose full-rate records these are; None where they are the probed point's.
+        other_discharge_record: the same of the run that is compared with.
         other_depth_record: the same of the run that is compared with.
         other_speed_record: the same of the run that is compared with.
     """
@@ -301,6 +319,10 @@ class ViewStatus:
     speed_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
     other_depth_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
     other_speed_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    places: tuple[PlaceRow, ...] = ()
+    series_of: PlaceRow | None = None
+    discharge_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
+    other_discharge_record: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
     speed_x_real_time: float | None = None
     volume_error_relative: float | None = None
     options: tuple[tuple[str, bool | float | str], ...] = ()

@@ -20,6 +20,7 @@ class RunBook:
         working_lists: the newest list of edits of each run.
         applied: the edits each run was computed with, as far as known.
         forcing: the newest forcing of each run that was watched.
+        places: gauges and sections of each run that was watched.
         controllers: who controls each run, as far as told.
         control_requests: who asked last for the control of a run that is controlled from here.
     """
@@ -35,6 +36,7 @@ class RunBook:
         self.working_lists: dict[str, protocol.EditsChanged] = {}
         self.applied: dict[str, tuple[protocol.Edit, ...]] = {}
         self.forcing: dict[str, protocol.ForcingChanged] = {}
+        self.places: dict[str, protocol.Places] = {}
         self.controllers: dict[str, protocol.ControlChanged] = {}
         self.control_requests: dict[str, protocol.ControlRequested] = {}
         self._by_revision: dict[tuple[str, int], tuple[protocol.Edit, ...]] = {}

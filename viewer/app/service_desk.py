@@ -61,6 +61,7 @@ class ServiceDesk:
         server: name and version of the service; empty before it said them.
         session: the name the service gave this connection.
         channel_came: called with every channel that comes.
+        series_came: called with all series that come.
     """
 
     def __init__(self, connection: ConnectionThread, listener: ServiceListener) -> None:
@@ -71,6 +72,7 @@ class ServiceDesk:
         self._link = ServiceLink(connection, listener.say)
         self._heard_at: float | None = None
         self.channel_came: Callable[[protocol.ChannelReceived], None] = lambda message: None
+        self.series_came: Callable[[protocol.SeriesReceived], None] = lambda message: None
         self._awaits_welcome = False
         self.server = ""
         self.session = ""
@@ -181,6 +183,17 @@ class ServiceDesk:
 
         return self._link.send(make, f"fetch the {channel}", refused=refused)
 
+    def fetch_series(
+        self, run: str, from_index: int, numbered: Callable[[int], None], refused: Refusal
+    ) -> None:
+        """Ask for what gauges and sections recorded from a frame on; see `fetch_channel`."""
+
+        def make(number: int) -> protocol.GetSeries:
+            numbered(number)
+            return protocol.GetSeries(number, run=run, from_index=from_index)
+
+        self._link.send(make, "fetch the series", refused=refused)
+
     def subscribe(self, run: str, from_index: int, mode: protocol.SubscriptionMode) -> None:
         """Ask for the frames of a run from an index on."""
         self._link.send(
@@ -286,6 +299,8 @@ class ServiceDesk:
                 self._note_run(message.run)
             case protocol.RunRemoved():
                 self.book.remove(message.run)
+            case protocol.Places():
+                self.book.places[message.run] = message
             case protocol.ForcingChanged():
                 self.book.forcing[message.run] = message
             case protocol.ControlChanged():
@@ -306,6 +321,8 @@ class ServiceDesk:
                 self._listener.picture_came(message)
             case protocol.ChannelReceived():
                 self.channel_came(message)
+            case protocol.SeriesReceived():
+                self.series_came(message)
             case protocol.Progress():
                 self.book.progress[message.run] = message
             case protocol.ViewPresented():

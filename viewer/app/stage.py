@@ -191,7 +191,7 @@ class Stage:
         options = still(inputs.options)
         scale = min(options.render_scale, longest / max(size))
         if not order.with_text and inputs.hud is not None:
-            inputs = dataclasses.replace(inputs, hud=only_warnings(inputs.hud))
+            inputs = dataclasses.replace(inputs, hud=only_warnings(inputs.hud), marks=())
         inputs = dataclasses.replace(inputs, options=dataclasses.replace(options, render_scale=scale))
         colour = self.context.renderbuffer(size, 3)
         target = self.context.framebuffer([colour])

@@ -21,6 +21,7 @@ _SWITCHES = (
     "show_sky",
     "show_imagery",
     "show_edits",
+    "show_gauges",
     "show_text",
     "full_mesh",
     "fog",

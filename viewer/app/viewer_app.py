@@ -16,6 +16,7 @@ from viewer.app.channel_feed import ChannelFeed
 from viewer.app.comparison import Comparison
 from viewer.app.edit_report import edit_overlay
 from viewer.app.flow_probe import FlowProbe
+from viewer.app.gauges import Gauges
 from viewer.app.hud_writer import HudWriter
 from viewer.app.levee_watch import LeveeWatch
 from viewer.app.map_maker import MapMaker
@@ -26,6 +27,7 @@ from viewer.app.pointing import Pointing
 from viewer.app.presenting import Presenting
 from viewer.app.recalculation import Recalculation
 from viewer.app.run_control import RunControl
+from viewer.app.series_feed import SeriesFeed
 from viewer.app.service_desk import ServiceDesk
 from viewer.app.shown_run import ShownRun
 from viewer.app.status_report import program_status, run_status
@@ -50,6 +52,7 @@ from viewer.commands import (
     SavePicture,
     SetOption,
     SetSpeed,
+    ShowSeries,
     StartRun,
     StopRun,
     TogglePlay,
@@ -105,6 +108,7 @@ class ViewerApp:
         self.feed = WaterFeed(loader, self.desk.book, self.control.request_frame)
         channels = ChannelFeed(self.desk, ChannelLoader())
         self.pointing = Pointing(loader, self.feed, FlowProbe(channels, self.feed))
+        self.gauges = Gauges(self.desk.book, SeriesFeed(self.desk, self.complain), self.pointing)
         self.options = RenderOptions()
         self.camera_work: CameraWork | None = None
         self._picture_order: SavePicture | None = None
@@ -178,8 +182,8 @@ class ViewerApp:
                 self.options = changed_options(self.options, name, value)
                 if self.camera_work is not None:
                     self.camera_work.set_exaggeration(self.options.exaggeration)
-            case ProbeAt():
-                self.pointing.take(command, self.shown)
+            case ProbeAt() | ShowSeries():
+                self._picture_stale |= self.gauges.take(command, self.shown, self.camera_work, self.options)
             case MoveHover():
                 self.pointing.take(command, self.shown)
                 self._picture_stale |= self.control.editing.drawing.is_on or self.measuring.is_on
@@ -241,6 +245,7 @@ class ViewerApp:
             changed |= shown.refresh_ground(self.feed.moved)
             changed |= self.comparison.advance(shown, self.clock.time, self.options)
             changed |= self.water.advance(shown, self.options)
+            self.gauges.advance(shown, self.comparison.other, now)
             self._status_stale |= self._levee_watch.look(shown, self.feed, self.options.depth_shown)
         if changed:
             self._status_stale = True
@@ -304,7 +309,8 @@ class ViewerApp:
             hud=self._hud.write(self.shown, self.options),
             is_outdated=not self.desk.is_open,
         )
-        return self.comparison.dressed(self.water.dressed(inputs), self.shown)
+        inputs = self.gauges.dressed(self.water.dressed(inputs), self.shown)
+        return self.comparison.dressed(inputs, self.shown)
 
     def note_painted(self, size: tuple[int, int]) -> None:
         """The inputs given last are on the picture; the latency of a recalculation ends here."""
@@ -381,4 +387,5 @@ class ViewerApp:
         status = self.water.told(status, self.shown, self.options)
         compared = self.comparison.told(status)
         measured = self.measuring.report(compared, self.shown)
-        return self.pointing.report(measured, self.shown, self.comparison.other)
+        pointed = self.pointing.report(measured, self.shown, self.comparison.other)
+        return self.gauges.report(pointed, self.shown, self.comparison.other)

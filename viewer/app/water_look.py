@@ -6,6 +6,7 @@ from viewer.app.channel_feed import ChannelFeed
 from viewer.app.shown_run import ShownRun
 from viewer.net import ChannelFields, ChannelKey, FrameKey
 from viewer.render import CellField, Colouring, RenderOptions, WaterPair
+from viewer.units import Units
 from viewer.view_status import LegendRow, clock_text, time_text
 from viewer.world import ClassScale, WaterColour, water_scale
 
@@ -66,7 +67,7 @@ class WaterLook:
         self.velocities = None
         if wants_velocity and keys is not None and self._keeps(shown, "velocity"):
             self.velocities = self._velocities(shown, keys)
-        scale = self._scale_of(shown, colour)
+        scale = self._scale_of(shown, colour, options.units)
         self.colouring = None if scale is None else self._colouring(shown, keys, colour, scale)
         if pair is None:
             self.colouring = None
@@ -169,12 +170,12 @@ class WaterLook:
             index = max(index // step * step, shown.branch_index if index >= shown.branch_index else 0)
         return (*shown.frame_key(index), "maxima")
 
-    def _scale_of(self, shown: ShownRun, wanted: WaterColour) -> ClassScale | None:
+    def _scale_of(self, shown: ShownRun, wanted: WaterColour, units: Units) -> ClassScale | None:
         start = shown.info.start_time
-        made_for = (wanted, shown.info.duration, start)
+        made_for = (wanted, shown.info.duration, start, units)
         if self._scale[0] != made_for:
             clock = None if start is None else (lambda time: clock_text(start, time)[11:16])
-            self._scale = (made_for, water_scale(wanted, shown.info.duration, clock))
+            self._scale = (made_for, water_scale(wanted, shown.info.duration, clock, units))
         return self._scale[1]
 
     @staticmethod

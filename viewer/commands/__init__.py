@@ -50,6 +50,7 @@ from viewer.commands.picture import (
     ProbeAt,
     SavePicture,
     SetOption,
+    ShowSeries,
 )
 from viewer.commands.playback import (
     FollowLive,
@@ -140,6 +141,7 @@ __all__ = [
     "SelectRun",
     "SetOption",
     "SetSpeed",
+    "ShowSeries",
     "StartRun",
     "StopRun",
     "StrokeTo",

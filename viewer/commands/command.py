@@ -46,6 +46,7 @@ from viewer.commands.picture import (
     ProbeAt,
     SavePicture,
     SetOption,
+    ShowSeries,
 )
 from viewer.commands.playback import (
     FollowLive,
@@ -151,6 +152,7 @@ Command = (
     | MoveHover
     | ProbeAt
     | SetOption
+    | ShowSeries
     | SavePicture
 )
 """Any command."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["MoveHover", "ProbeAt", "SavePicture", "SetOption"]
+__all__ = ["MoveHover", "ProbeAt", "SavePicture", "SetOption", "ShowSeries"]
 
 
 @dataclass(frozen=True)
@@ -21,6 +21,19 @@ class ProbeAt:
 
     x: float
     y: float
+
+
+@dataclass(frozen=True)
+class ShowSeries:
+    """Show what a gauge or section of the shown run records; None shows the probed point again.
+
+    Attributes:
+        id: the gauge's or section's name.
+        kind: "gauge" or "section" where both have that name; empty for either.
+    """
+
+    id: str | None
+    kind: str = ""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ LAYERS = {
     "show_terrain": ("Ground", "The terrain"),
     "show_imagery": ("Imagery on the ground", "The picture of the land that comes with the case, if any"),
     "show_edits": ("Marks of edits", "Lines and colours where the ground is raised or lowered"),
+    "show_gauges": ("Gauges and sections", "Marks where the case records depth, speed and discharge"),
     "show_text": ("Title, legend and scale", "What is written on the picture"),
     "show_sky": ("Sky", "The sky, which the water mirrors"),
     "fog": ("Haze", "Far ground fades into the horizon"),

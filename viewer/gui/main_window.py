@@ -106,7 +106,7 @@ class MainWindow(QMainWindow):
         self.edit_panel = EditPanel(self._dispatch)
         self.run_panel = RunPanel(self._dispatch)
         self.forcing_panel = ForcingPanel(self._dispatch)
-        self.depth_plot = DepthPlot()
+        self.depth_plot = DepthPlot(self._dispatch)
         self.water_panel = WaterPanel(self._dispatch)
         self.connection_panel = ConnectionPanel(self._dispatch)
         self.layers_panel = LayersPanel(self._dispatch)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from viewer.lod.block_tiling import Border
 from viewer.units import METRIC, Units
 from viewer.world.camera import Camera
+from viewer.world.coordinates import Point
 from viewer.world.flow_arrows import FlowField
 from viewer.world.heightfield import Heightfield
 from viewer.world.water_scales import ClassScale, WaterColour
@@ -26,6 +27,7 @@ __all__ = [
     "FrameStats",
     "HudText",
     "LineStyle",
+    "PlaceMark",
     "RenderOptions",
     "WaterFrame",
     "WaterPair",
@@ -39,6 +41,7 @@ class LineStyle(Enum):
     RAISE = "raise"
     LOWER = "lower"
     DRAFT = "draft"
+    SECTION = "section"
     SELECTED = "selected"
     MEASURE = "measure"
 
@@ -78,6 +81,17 @@ class DrapedLine:
     width: float
     """[m]"""
     style: LineStyle
+
+
+@dataclass(frozen=True)
+class PlaceMark:
+    """A pin with a name, drawn over everything in the scene."""
+
+    name: str
+    point: Point
+    """The foot of the pin, in the world [m]."""
+    is_chosen: bool = False
+    """Drawn in another colour."""
 
 
 @dataclass(frozen=True)
@@ -182,6 +196,8 @@ class RenderOptions:
     """Walls below the border of the map."""
     show_edits: bool = True
     """Lines and colours where the ground is edited."""
+    show_gauges: bool = True
+    """Marks of gauges and sections."""
     show_text: bool = True
     """Title, legend, scale bar and north arrow; that an event is hypothetical is told in any case."""
     show_imagery: bool = True
@@ -245,6 +261,10 @@ class FrameInputs:
     """Arrows on the water; None draws none."""
     beside: Beside | None = None
     """Another run right of a divider; None gives this one the whole picture."""
+    marks: tuple[PlaceMark, ...] = ()
+    """Gauges and sections by name."""
+    lines: tuple[DrapedLine, ...] = ()
+    """Lines on the ground beside those of edits."""
     is_outdated: bool = False
     """The flood may have gone on unseen, say since the service is gone: the scene is drawn in grey."""
 

@@ -7,7 +7,7 @@ from functools import cache
 
 from PIL import Image, ImageDraw, ImageFont
 
-from viewer.units import METRIC, Units
+from viewer.units import METRIC, US, Units
 from viewer.world.water_scales import ClassScale
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "divider_panel",
     "flow_panel",
     "legend_panel",
+    "mark_panel",
     "natural_water_colour",
     "nice_length",
     "scale_panel",
@@ -28,17 +29,22 @@ _SOFT_INK = (214, 222, 230, 255)
 _PLATE = (14, 24, 34, 168)
 _MARGIN = 12
 
-NATURAL_RAMP_DEPTHS = (0.0, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
-"""Depths marked on the ramp of natural water [m]."""
+NATURAL_RAMP_DEPTHS = {
+    METRIC: (0.0, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0),
+    US: (0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0),
+}
+"""Depths marked on the ramp of natural water, in each unit of length."""
 
 
 DIFFERENCES = (
-    ("1 m deeper and more", (158, 13, 107)),
+    ("{} deeper and more", (158, 13, 107)),
     ("deeper, newly wet", (232, 148, 204)),
     ("shallower, spared", (179, 222, 128)),
-    ("1 m shallower and more", (46, 120, 18)),
+    ("{} shallower and more", (46, 120, 18)),
 )
-"""Colours of a comparison between two runs."""
+"""Colours of a comparison between two runs; the length is `MUCH`."""
+MUCH = 1.0
+"""From this difference on the colour is full [m]."""
 
 
 @cache
@@ -110,20 +116,21 @@ def legend_panel(classes: ClassScale, scale: float) -> Image.Image:
     return image
 
 
-def depth_ramp_panel(scale: float) -> Image.Image:
-    """What natural water of different depths looks like from above; depths in metres."""
+def depth_ramp_panel(scale: float, units: Units = METRIC) -> Image.Image:
+    """What natural water of different depths looks like from above."""
+    depths = NATURAL_RAMP_DEPTHS[units]
     size, margin = round(15 * scale), round(_MARGIN * scale)
     step, bar = round(38 * scale), round(14 * scale)
-    parts = len(NATURAL_RAMP_DEPTHS) - 1
+    parts = len(depths) - 1
     image, draw = _plate(step * parts + 2 * margin, round(66 * scale) + margin)
-    draw.text((margin, round(8 * scale)), "Water depth [m]", font=_font(size), fill=_INK)
+    draw.text((margin, round(8 * scale)), f"Water depth [{units.length}]", font=_font(size), fill=_INK)
     y = round(34 * scale)
     for pixel in range(step * parts):
         part, share = divmod(pixel / step, 1.0)
-        low, high = NATURAL_RAMP_DEPTHS[int(part)], NATURAL_RAMP_DEPTHS[int(part) + 1]
-        colour = natural_water_colour(low + share * (high - low))
+        low, high = depths[int(part)], depths[int(part) + 1]
+        colour = natural_water_colour(units.metres(low + share * (high - low)))
         draw.line((margin + pixel, y, margin + pixel, y + bar), fill=(*colour, 255))
-    for part, depth in enumerate(NATURAL_RAMP_DEPTHS):
+    for part, depth in enumerate(depths):
         x = margin + part * step
         draw.line((x, y, x, y + bar + round(3 * scale)), fill=_SOFT_INK)
         place = (x, y + bar + round(5 * scale))
@@ -131,15 +138,17 @@ def depth_ramp_panel(scale: float) -> Image.Image:
     return image
 
 
-def difference_panel(other: str, scale: float) -> Image.Image:
+def difference_panel(other: str, scale: float, units: Units = METRIC) -> Image.Image:
     """What the colours of a comparison mean, as `shaders/common/difference.glsl` has them."""
     size, row = round(15 * scale), round(22 * scale)
     margin, box, gap = round(_MARGIN * scale), round(26 * scale), round(10 * scale)
+    much = f"{units.shown(MUCH):.2g} {units.length}"
+    rows = [(text.format(much), colour) for text, colour in DIFFERENCES]
     heading = f"Against {other}"
-    width = max(_extent(heading, size)[0], box + gap + max(_extent(text, size)[0] for text, _ in DIFFERENCES))
-    image, draw = _plate(width + 2 * margin, row * (len(DIFFERENCES) + 1) + 2 * margin)
+    width = max(_extent(heading, size)[0], box + gap + max(_extent(text, size)[0] for text, _ in rows))
+    image, draw = _plate(width + 2 * margin, row * (len(rows) + 1) + 2 * margin)
     draw.text((margin, margin), heading, font=_font(size), fill=_INK)
-    for k, (text, colour) in enumerate(DIFFERENCES, start=1):
+    for k, (text, colour) in enumerate(rows, start=1):
         y = margin + k * row
         draw.rectangle((margin, y + 2, margin + box, y + row - 3), fill=(*colour, 255))
         draw.text((margin + box + gap, y), text, font=_font(size), fill=_SOFT_INK)
@@ -161,6 +170,32 @@ def flow_panel(speed: str, length: float, scale: float) -> Image.Image:
     draw.line((x, y, end - half, y), fill=_INK, width=max(2, round(3 * scale)))
     draw.polygon([(end, y), (end - 1.8 * half, y - half), (end - 1.8 * half, y + half)], fill=_INK)
     draw.text((end + gap, y), text, font=_font(size), fill=_INK, anchor="lm")
+    return image
+
+
+def mark_panel(name: str, is_chosen: bool, scale: float) -> Image.Image:
+    """A pin whose point is the middle of the lower border, with its name above; an empty name has none."""
+    ink = (255, 225, 90, 255) if is_chosen else (110, 245, 215, 255)
+    size, pad, pin = round(14 * scale), round(5 * scale), round(15 * scale)
+    head = max(2, round(5 * scale))
+    width, height = (0, 0)
+    if name:
+        width, height = _extent(name, size)
+        width, height = width + 2 * pad, height + 2 * pad
+    plate = _plate(width, height)[0] if name else None
+    full = max(width, 2 * head + 1) | 1  # odd, so that the point has a pixel
+    image = Image.new("RGBA", (full, height + pin), (0, 0, 0, 0))
+    if plate is not None:
+        image.paste(plate, ((full - width) // 2, 0))
+    draw = ImageDraw.Draw(image)
+    if name:
+        draw.text(((full - width) // 2 + pad, pad), name, font=_font(size), fill=ink)
+    middle = full // 2
+    draw.polygon(
+        [(middle - head, height), (middle + head, height), (middle, height + pin - 1)],
+        fill=ink,
+        outline=(10, 20, 28, 255),
+    )
     return image
 
 

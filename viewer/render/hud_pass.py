@@ -51,7 +51,8 @@ class HudPass:
         self._ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         scale = min(max(min(size[1] / 720.0, size[0] / 1280.0), 0.6), 3.0)
         edge = round(_EDGE * scale)
-        draws = self._draw_corners(hud, inputs, size, scale, edge)
+        draws = self._draw_marks(inputs, size, scale)
+        draws += self._draw_corners(hud, inputs, size, scale, edge)
         draws += self._draw_divider(inputs.beside, size, scale)
         top = edge
         banners = (
@@ -87,18 +88,18 @@ class HudPass:
             draws += 1
         if hud.legend and inputs.water is not None and inputs.options.show_water:
             classes = None if inputs.colouring is None else inputs.colouring.scale
+            units = inputs.options.units
             if classes is None:
-                make = partial(hud_panels.depth_ramp_panel, scale)
+                make = partial(hud_panels.depth_ramp_panel, scale, units)
             else:
                 make = partial(hud_panels.legend_panel, classes, scale)
-            texture = self._panel("legend", (classes, scale), make)
+            texture = self._panel("legend", (classes, scale, units), make)
             self._blit(texture, size, edge, size[1] - texture.height - edge)
             draws += 1
         if inputs.difference is not None:
             other = inputs.difference.other
-            texture = self._panel(
-                "difference", (other, scale), lambda: hud_panels.difference_panel(other, scale)
-            )
+            says_other = (other, scale, inputs.options.units)
+            texture = self._panel("difference", says_other, lambda: hud_panels.difference_panel(*says_other))
             above = self._panels["legend"].texture.height + edge // 2 if "legend" in self._panels else 0
             self._blit(texture, size, edge, size[1] - texture.height - edge - above)
             draws += 1
@@ -119,6 +120,27 @@ class HudPass:
             texture = self._panel("scale", says_where, lambda: hud_panels.scale_panel(*says_where))
             self._blit(texture, size, size[0] - texture.width - edge, size[1] - texture.height - edge)
             draws += 1
+        return draws
+
+    def _draw_marks(self, inputs: FrameInputs, size: tuple[int, int], scale: float) -> int:
+        """Pins at places on the picture; a name that would cover one drawn before is left out."""
+        taken: list[tuple[int, int, int, int]] = []
+        draws = 0
+        for mark in sorted(inputs.marks, key=lambda at: not at.is_chosen):
+            seen = inputs.camera.seen_at(mark.point, size[0] / size[1])
+            if seen is None or max(map(abs, seen)) > 1.0:
+                continue
+            x, y = round(0.5 * (1.0 + seen[0]) * size[0]), round(0.5 * (1.0 - seen[1]) * size[1])
+            for name in (mark.name, ""):
+                says = (name, mark.is_chosen, scale)
+                texture = self._panel(f"mark {says}", says, partial(hud_panels.mark_panel, *says))
+                left, top = x - texture.width // 2, y - texture.height
+                box = (left, top, left + texture.width, y)
+                if not any(_overlap(box, other) for other in taken):
+                    taken.append(box)
+                    self._blit(texture, size, left, top)
+                    draws += 1
+                    break
         return draws
 
     def _draw_divider(self, beside: Beside | None, size: tuple[int, int], scale: float) -> int:
@@ -177,6 +199,11 @@ class HudPass:
         set_uniforms(self._program, window=window)
         texture.use(0)
         self._array.render(moderngl.TRIANGLE_STRIP, vertices=4)
+
+
+def _overlap(first: tuple[int, int, int, int], second: tuple[int, int, int, int]) -> bool:
+    """Whether two boxes (left, top, right, bottom) share a pixel."""
+    return first[0] < second[2] and second[0] < first[2] and first[1] < second[3] and second[1] < first[3]
 
 
 def _scale_and_bearing(camera: Camera, size: tuple[int, int]) -> tuple[float, float]:

@@ -21,6 +21,7 @@ _COLOURS = {
     LineStyle.LOWER: (0.55, 0.75, 1.0, 1.0),
     LineStyle.DRAFT: (1.0, 1.0, 1.0, 1.0),
     LineStyle.MEASURE: (1.0, 0.45, 0.85, 1.0),
+    LineStyle.SECTION: (0.35, 0.95, 0.80, 1.0),
     LineStyle.SELECTED: (1.0, 1.0, 0.35, 1.0),
 }
 _WIDTH_PX = 5.0

@@ -225,9 +225,10 @@ class Renderer:
         if inputs.flow is not None and inputs.water is not None and slots is not None:
             arrows = self._arrows(inputs, inputs.water, inputs.flow, scene.size)
             draws += self._flow.draw(self._ground, slots, inputs.water.alpha, arrows)
-        if inputs.edits is not None:
+        lines = inputs.lines if inputs.edits is None else (*inputs.lines, *inputs.edits.lines)
+        if lines or inputs.edits is not None:
             alpha = 0.0 if inputs.water is None else inputs.water.alpha
-            draws += self._lines.draw(self._ground, inputs.edits.lines, slots, alpha, options.render_scale)
+            draws += self._lines.draw(self._ground, lines, slots, alpha, options.render_scale)
         return draws
 
     def _blocks_of(self, options: RenderOptions) -> BlockPasses:

@@ -93,6 +93,15 @@ class Camera:
         direction = self.forward + x_ndc * t * aspect * self.right + y_ndc * t * self.up
         return direction / np.linalg.norm(direction)
 
+    def seen_at(self, point: Point, aspect: float) -> tuple[float, float] | None:
+        """Where a world point is on the picture (both from -1 to 1 within it, y up); None behind the eye."""
+        towards = np.asarray(point, dtype=np.float64) - self.eye
+        depth = float(towards @ self.forward)
+        if depth <= 0.0:
+            return None
+        reach = depth * math.tan(0.5 * self.fov_y)
+        return float(towards @ self.right) / (reach * aspect), float(towards @ self.up) / reach
+
     def with_target(self, target: Point) -> Camera:
         """The same view of another point."""
         return replace(self, target=(float(target[0]), float(target[1]), float(target[2])))

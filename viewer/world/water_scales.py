@@ -22,6 +22,8 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from viewer.units import METRIC, Units
+
 __all__ = ["DEPTH_SCALE", "ClassScale", "WaterColour", "arrival_scale", "hazard_rating", "water_scale"]
 
 Colour = tuple[int, int, int]
@@ -106,7 +108,10 @@ def arrival_scale(duration: float, clock_text: Callable[[float], str] | None = N
 
 
 def water_scale(
-    colour: WaterColour, duration: float, clock_text: Callable[[float], str] | None = None
+    colour: WaterColour,
+    duration: float,
+    clock_text: Callable[[float], str] | None = None,
+    units: Units = METRIC,
 ) -> ClassScale | None:
     """Classes of a way to colour; None for natural water.
 
@@ -114,10 +119,12 @@ def water_scale(
         colour: the way.
         duration: length of the run [s], for arrival times.
         clock_text: as for `arrival_scale`.
+        units: units of heading and labels; limits stay in SI, and hazard ratings are what they are.
     """
     if colour is WaterColour.ARRIVAL:
         return arrival_scale(duration, clock_text)
-    return _SCALES.get(colour)
+    made = _SCALES.get(colour)
+    return None if made is None else made(units)
 
 
 def _moment(seconds: float) -> str:
@@ -127,8 +134,8 @@ def _moment(seconds: float) -> str:
     return f"{minutes // 60}:{minutes % 60:02d} h" if minutes >= 60 else f"{minutes} min"
 
 
-def _limit_labels(limits: tuple[float, ...]) -> tuple[str, ...]:
-    texts = [f"{limit:g}" for limit in limits]
+def _limit_labels(limits: tuple[float, ...], units: Units) -> tuple[str, ...]:
+    texts = [f"{limit:g}" if units is METRIC else f"{units.shown(limit):.2g}" for limit in limits]
     return (f"< {texts[0]}", *(f"{low} - {high}" for low, high in pairwise(texts)), f"> {texts[-1]}")
 
 
@@ -171,24 +178,28 @@ _ARRIVAL_COLOURS: tuple[Colour, ...] = (
 )
 
 
-def _depth_scale(heading: str) -> ClassScale:
-    return ClassScale(heading, _DEPTH_LIMITS, _DEPTH_COLOURS, _limit_labels(_DEPTH_LIMITS))
+def _depth_scale(quantity: str) -> Callable[[Units], ClassScale]:
+    return lambda units: ClassScale(
+        f"{quantity} [{units.length}]", _DEPTH_LIMITS, _DEPTH_COLOURS, _limit_labels(_DEPTH_LIMITS, units)
+    )
 
 
-def _speed_scale(heading: str) -> ClassScale:
-    return ClassScale(heading, _SPEED_LIMITS, _SPEED_COLOURS, _limit_labels(_SPEED_LIMITS))
+def _speed_scale(quantity: str) -> Callable[[Units], ClassScale]:
+    return lambda units: ClassScale(
+        f"{quantity} [{units.speed}]", _SPEED_LIMITS, _SPEED_COLOURS, _limit_labels(_SPEED_LIMITS, units)
+    )
 
 
-def _hazard_scale(heading: str) -> ClassScale:
-    return ClassScale(heading, _HAZARD_LIMITS, _HAZARD_COLOURS, _HAZARD_LABELS)
+def _hazard_scale(heading: str) -> Callable[[Units], ClassScale]:
+    return lambda _: ClassScale(heading, _HAZARD_LIMITS, _HAZARD_COLOURS, _HAZARD_LABELS)
 
 
-DEPTH_SCALE = _depth_scale("Water depth [m]")
-_SCALES = {
-    WaterColour.DEPTH: DEPTH_SCALE,
-    WaterColour.SPEED: _speed_scale("Flow speed [m/s]"),
+_SCALES: dict[WaterColour, Callable[[Units], ClassScale]] = {
+    WaterColour.DEPTH: _depth_scale("Water depth"),
+    WaterColour.SPEED: _speed_scale("Flow speed"),
     WaterColour.HAZARD: _hazard_scale("Hazard rating"),
-    WaterColour.MAX_DEPTH: _depth_scale("Greatest depth [m]"),
-    WaterColour.MAX_SPEED: _speed_scale("Greatest speed [m/s]"),
+    WaterColour.MAX_DEPTH: _depth_scale("Greatest depth"),
+    WaterColour.MAX_SPEED: _speed_scale("Greatest speed"),
     WaterColour.MAX_HAZARD: _hazard_scale("Greatest hazard rating"),
 }
+DEPTH_SCALE = _SCALES[WaterColour.DEPTH](METRIC)

@@ -7,6 +7,7 @@ from tests.viewer.app.conftest import Flight
 from tests.viewer.tiny_service import INTERVAL, TinyService
 from viewer.app.water_look import WaterLook
 from viewer.commands import Pause, Seek, SetOption
+from viewer.units import METRIC
 from viewer.world import WaterColour
 
 
@@ -92,9 +93,9 @@ def test_a_run_without_channels_says_so_and_stays_natural(bare: Flight) -> None:
 def test_arrival_is_told_in_clock_time_where_the_case_has_a_clock(flight: Flight) -> None:
     shown = flight.shown
     look = look_of(flight)
-    plain = look._scale_of(shown, WaterColour.ARRIVAL)
+    plain = look._scale_of(shown, WaterColour.ARRIVAL, METRIC)
     shown.info = msgspec.structs.replace(shown.info, start_time="2024-06-01T12:00:00+02:00")
-    clock = look._scale_of(shown, WaterColour.ARRIVAL)
+    clock = look._scale_of(shown, WaterColour.ARRIVAL, METRIC)
 
     assert plain is not None
     assert clock is not None

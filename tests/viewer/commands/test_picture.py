@@ -1,6 +1,14 @@
 import pytest
 
-from viewer.commands import Command, MoveHover, ProbeAt, SavePicture, SetOption, command_from_mapping
+from viewer.commands import (
+    Command,
+    MoveHover,
+    ProbeAt,
+    SavePicture,
+    SetOption,
+    ShowSeries,
+    command_from_mapping,
+)
 
 
 @pytest.mark.parametrize(
@@ -9,6 +17,8 @@ from viewer.commands import Command, MoveHover, ProbeAt, SavePicture, SetOption,
         ({"command": "MoveHover", "x": None, "y": None}, MoveHover(None, None)),
         ({"command": "ProbeAt", "x": 1, "y": 2}, ProbeAt(1.0, 2.0)),
         ({"command": "SetOption", "name": "tau_px", "value": 3}, SetOption("tau_px", 3.0)),
+        ({"command": "ShowSeries", "id": "town"}, ShowSeries("town")),
+        ({"command": "ShowSeries", "id": None}, ShowSeries(None)),
         ({"command": "SavePicture", "path": "flood.png"}, SavePicture("flood.png")),
     ],
 )

@@ -92,3 +92,25 @@ def test_the_legend_of_a_comparison_names_the_other_run_and_has_a_box_for_each_c
     for _, colour in hud_panels.DIFFERENCES:
         assert (panel[..., :3] == colour).all(axis=2).sum() > 200
     assert longer.width > panel.shape[1]
+
+
+def test_legends_are_written_in_the_units_asked_for() -> None:
+    for make in (
+        lambda units: hud_panels.depth_ramp_panel(1.0, units),
+        lambda units: hud_panels.difference_panel("run x", 1.0, units),
+    ):
+        assert make(METRIC).tobytes() != make(US).tobytes()
+        assert make(METRIC).tobytes() == make(METRIC).tobytes()
+
+
+def test_a_pin_points_at_the_middle_of_its_lower_border_with_or_without_a_name() -> None:
+    for name in ("town", ""):
+        panel = pixels(hud_panels.mark_panel(name, False, 1.0))
+        assert panel.shape[1] % 2 == 1
+        tip = np.flatnonzero(panel[-1, :, 3])
+        assert abs(tip.mean() - panel.shape[1] // 2) <= 1.0
+    named, bare, chosen = (
+        hud_panels.mark_panel(*says, 1.0) for says in (("town", False), ("", False), ("town", True))
+    )
+    assert named.height > bare.height
+    assert named.tobytes() != chosen.tobytes()

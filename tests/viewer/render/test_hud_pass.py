@@ -4,7 +4,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from viewer.render import Colouring, FrameInputs, HudText, WaterFrame, WaterPair, hud_panels
+from viewer.render import Colouring, FrameInputs, HudText, PlaceMark, WaterFrame, WaterPair, hud_panels
 from viewer.world import DEPTH_SCALE, Camera, Heightfield, WaterColour
 
 pytestmark = pytest.mark.gl
@@ -86,3 +86,21 @@ def test_a_panel_is_made_anew_only_when_it_says_something_else(
         stage.draw(FrameInputs(CAMERA, hud=HudText(time=time)))
 
     assert made == ["00:20", "00:40"]
+
+
+def test_a_pin_ends_where_the_place_is_and_its_name_gives_way_to_one_before(stage) -> None:
+    point = (100.0, 40.0, -50.0)
+    seen = CAMERA.seen_at(point, 640 / 360)
+    assert seen is not None
+    plain = stage.draw(FrameInputs(CAMERA, hud=HudText())).astype(int)
+
+    def where(*marks: PlaceMark) -> np.ndarray:
+        return (stage.draw(FrameInputs(CAMERA, hud=HudText(), marks=marks)) != plain).any(axis=2)
+
+    one = where(PlaceMark("gauge", point))
+    rows, columns = np.nonzero(one)
+    assert rows.max() == pytest.approx(180.0 * (1.0 - seen[1]), abs=2.0)
+    assert columns.mean() == pytest.approx(320.0 * (1.0 + seen[0]), abs=3.0)
+    twice = where(PlaceMark("gauge", point), PlaceMark("another", point))
+    assert np.array_equal(twice, one)
+    assert not where(PlaceMark("behind", tuple(2.0 * CAMERA.eye - np.array(CAMERA.target)))).any()

@@ -110,3 +110,13 @@ def test_the_overview_shows_all_corners_and_wastes_little(azimuth: float, aspect
     reach = np.abs(clip[:, :2] / clip[:, 3:]).max()
 
     assert 0.85 < reach < 1.0
+
+
+def test_a_point_is_seen_where_the_matrices_put_it_and_not_behind_the_eye() -> None:
+    camera = Camera((10.0, 5.0, -20.0), 300.0, 0.7, 0.5)
+    point = (60.0, 12.0, 40.0)
+    clip = camera.projection(1.6, 1.0, 1e4) @ camera.view_matrix() @ np.array([*point, 1.0])
+
+    assert camera.seen_at(point, 1.6) == pytest.approx(tuple(clip[:2] / clip[3]))
+    assert camera.seen_at(camera.target, 1.6) == pytest.approx((0.0, 0.0))
+    assert camera.seen_at(tuple(2.0 * camera.eye - np.array(camera.target)), 1.6) is None

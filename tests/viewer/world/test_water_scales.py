@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from viewer.units import METRIC, US
 from viewer.world import ClassScale, WaterColour, arrival_scale, hazard_rating, water_scale
 from viewer.world.water_scales import LEAST_COLOUR_DISTANCE
 
@@ -130,3 +131,17 @@ def test_each_way_to_colour_names_the_channel_it_is_read_from() -> None:
     assert WaterColour.DEPTH.channel is None
     assert WaterColour.HAZARD.channel == "velocity"
     assert WaterColour.ARRIVAL.channel == "maxima"
+
+
+def test_labels_follow_the_units_and_limits_and_ratings_do_not() -> None:
+    for colour, heading, first in (
+        (WaterColour.DEPTH, "Water depth [ft]", ("< 0.49", "0.49 - 0.98")),
+        (WaterColour.MAX_SPEED, "Greatest speed [ft/s]", ("< 0.82", "0.82 - 1.6")),
+    ):
+        metric, us = (water_scale(colour, 3600.0, None, units) for units in (METRIC, US))
+        assert metric is not None
+        assert us is not None
+        assert (us.heading, us.labels[:2]) == (heading, first)
+        assert (us.limits, us.colours) == (metric.limits, metric.colours)
+        assert us.labels != metric.labels
+    assert water_scale(WaterColour.HAZARD, 1.0, None, US) == water_scale(WaterColour.HAZARD, 1.0)
