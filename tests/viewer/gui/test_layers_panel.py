@@ -45,7 +45,6 @@ def test_panel_and_menu_show_the_same(opened: OpenWindow) -> None:
     opened.app.dispatch(SetOption("show_imagery", False))
     opened.until(lambda: opened.window.view_menu.options()["exaggeration"] == 3.0)
 
-    assert opened.window.view_menu.options()["show_imagery"] is False
     assert not opened.window.layers_panel.layers["show_imagery"].isChecked()
     assert opened.window.layers_panel.sliders["exaggeration"].value == 3.0
 
