@@ -56,6 +56,7 @@ class Presenting:
         self._sent: protocol.View | None = None
         self._sent_at = float("-inf")
         self._followed: protocol.View | None = None
+        self._asked: str | None = None
 
     def report(self, status: ViewStatus) -> ViewStatus:
         """Return `status` with who presents and who is followed."""
@@ -76,7 +77,7 @@ class Presenting:
             case FollowView(session):
                 if session is not None and session not in self._views:
                     raise CommandError(f"session {session!r} presents no view; {self._named()}")
-                self.following, self._followed = session, None
+                self.following, self._followed, self._asked = session, None, None
                 if session is not None:
                     self._present(False)
             case _:
@@ -98,7 +99,7 @@ class Presenting:
     def forget(self) -> None:
         """Another connection begins: who presents will be told anew."""
         self._views.clear()
-        self._sent = None
+        self._sent = self._asked = None
 
     def advance(self, camera: CameraWork | None, now: float) -> None:
         """Show what has changed, or fly where the presenter is.
@@ -152,9 +153,11 @@ class Presenting:
     def _fly_along(self, camera: CameraWork | None, view: protocol.View) -> None:
         shown = self._control.shown
         if shown is None or camera is None or shown.run != view.run:
-            if view.run in self._control.desk.book.runs:
+            if self._asked != view.run and view.run in self._control.desk.book.runs:
+                self._asked = view.run
                 self._control.carry_out(SelectRun(view.run))
-            return  # its terrain may be another one; the view is taken up once it is shown
+            return  # its terrain may have to come first; the view is taken up once it is shown
+        self._asked = None
         self._followed = view
         camera.carry_out(FlyTo(view.x, view.y, view.distance, view.azimuth, view.elevation, PERIOD_S))
         self._clock.set_speed(view.speed)

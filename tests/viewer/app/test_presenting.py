@@ -116,3 +116,18 @@ def test_who_presents_does_not_follow(flight: Flight) -> None:
     assert (flight.app.presenting.following, flight.app.presenting.is_presenting) == (None, True)
     flight.do(FollowView("anna"))
     assert (flight.app.presenting.following, flight.app.presenting.is_presenting) == ("anna", False)
+
+
+def test_the_run_of_the_presenter_is_asked_for_once_however_long_its_terrain_takes(
+    flight: Flight, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = flight.service.add_run()
+    flight.app.desk.book.note_run(other.info)
+    asked: list[str] = []
+    monkeypatch.setattr(flight.app.control, "select_run", asked.append)
+    flight.app.presenting.take(shown_by(flight, other.info.run))
+    flight.do(FollowView("anna"))
+    end = time.monotonic() + 0.2
+    flight.until(lambda: time.monotonic() > end)
+
+    assert asked == [other.info.run]
