@@ -26,21 +26,10 @@ from viewer.commands import (
     SaveEdits,
     Undo,
 )
+from viewer.commands.edits import EditListCommand
 from viewer.view_status import EditSettings
 
 __all__ = ["EditList"]
-
-_COMMANDS = (
-    ChangeEdit,
-    DeleteEdit,
-    LoadEdits,
-    MoveEdit,
-    MoveVertex,
-    Redo,
-    RenameEdit,
-    SaveEdits,
-    Undo,
-)
 
 
 class EditList:
@@ -68,7 +57,7 @@ class EditList:
 
     def knows(self, command: Command) -> bool:
         """Whether a command is about the working list."""
-        return isinstance(command, _COMMANDS)
+        return isinstance(command, EditListCommand)
 
     def is_waiting(self, shown: ShownRun | None) -> bool:
         """Whether a change is not in the list of the shown run yet."""

@@ -30,6 +30,7 @@ from viewer.commands import (
     StrokeTo,
     TakeLevel,
 )
+from viewer.commands.edits import EditToolCommand
 from viewer.view_status import PointReadout
 
 __all__ = ["Editing"]
@@ -85,7 +86,7 @@ class Editing:
             self.drawing.settings = changed_settings(self.drawing.settings, command)
             self.refresh(shown)
             return True
-        if not (isinstance(command, _COMMANDS) or self.list.knows(command)):
+        if not (isinstance(command, EditToolCommand) or self.list.knows(command)):
             return False
         if shown is None:
             raise CommandError("no run is shown yet")
@@ -213,22 +214,3 @@ class Editing:
         protocol.check_edit(edit, shown.grid)
         self.drawing.put_away()
         self.list.append((edit,), shown)
-
-
-_COMMANDS = (
-    AddVertex,
-    BeginEdit,
-    BeginLevelPick,
-    BeginSelect,
-    CancelEdit,
-    DragEdit,
-    DropEdit,
-    DropVertex,
-    EndStroke,
-    FinishEdit,
-    GrabEdit,
-    SelectEdit,
-    StrokeTo,
-    TakeLevel,
-)
-"""Commands of the tools; the others are about the working list."""

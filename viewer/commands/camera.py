@@ -90,3 +90,7 @@ class ResetView:
 @dataclass(frozen=True)
 class TopView:
     """Show the whole terrain from straight above, north up."""
+
+
+CameraCommand = GrabView | DragOrbit | DragPan | Zoom | HoldMove | ReleaseMoves | FlyTo | ResetView | TopView
+"""Any command of this family."""

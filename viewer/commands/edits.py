@@ -209,3 +209,31 @@ class Undo:
 @dataclass(frozen=True)
 class Redo:
     """Make the change taken back last again."""
+
+
+EditToolCommand = (
+    BeginEdit
+    | AddVertex
+    | DropVertex
+    | StrokeTo
+    | EndStroke
+    | FinishEdit
+    | CancelEdit
+    | BeginSelect
+    | SelectEdit
+    | GrabEdit
+    | DragEdit
+    | DropEdit
+    | BeginLevelPick
+    | TakeLevel
+)
+"""What the tools in the hand do: draw, select, move, take a level."""
+
+
+EditListCommand = (
+    ChangeEdit | MoveEdit | MoveVertex | RenameEdit | DeleteEdit | SaveEdits | LoadEdits | Undo | Redo
+)
+"""What changes the working list, or carries it to and from files."""
+
+EditCommand = ChangeEditSettings | EditToolCommand | EditListCommand
+"""Any command about edits."""

@@ -31,3 +31,7 @@ class ResetForcing:
     """Let one item (None: all of them) be as the case says."""
 
     item: str | None = None
+
+
+ForcingCommand = ChangeForcing | ResetForcing
+"""Any command of this family."""

@@ -23,3 +23,7 @@ class AddMeasurePoint:
 @dataclass(frozen=True)
 class EndMeasure:
     """Put the measuring tool away, and the line with it."""
+
+
+MeasuringCommand = BeginMeasure | AddMeasurePoint | EndMeasure
+"""Any command of this family."""

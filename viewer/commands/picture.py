@@ -59,3 +59,7 @@ class SavePicture:
     width: float | None = None
     height: float | None = None
     with_text: bool = True
+
+
+PictureCommand = MoveHover | ProbeAt | ShowSeries | SetOption | SavePicture
+"""Any command of this family."""

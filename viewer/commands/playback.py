@@ -48,3 +48,7 @@ class FollowLive:
     """Stay at the newest computed frame (or stop doing so)."""
 
     on: bool = True
+
+
+PlaybackCommand = Play | Pause | TogglePlay | Seek | SetSpeed | Loop | FollowLive
+"""Any command of this family."""

@@ -19,3 +19,7 @@ class FollowView:
     """Fly along with the session that presents its view; None flies freely."""
 
     session: str | None = None
+
+
+PresentingCommand = PresentView | FollowView
+"""Any command of this family."""

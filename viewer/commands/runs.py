@@ -156,3 +156,24 @@ class ReleaseControl:
 @dataclass(frozen=True)
 class Recalculate:
     """Compute anew from the playback time on, with the working list of edits and the working forcing."""
+
+
+RunCommand = (
+    ConnectTo
+    | Reconnect
+    | StartRun
+    | SelectRun
+    | CompareWith
+    | MoveSwipe
+    | PauseRun
+    | ResumeRun
+    | StopRun
+    | RenameRun
+    | PinRun
+    | UnpinRun
+    | DeleteRun
+    | TakeControl
+    | ReleaseControl
+    | Recalculate
+)
+"""Any command of this family."""
