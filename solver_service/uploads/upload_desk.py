@@ -216,7 +216,7 @@ class UploadDesk:
         except asyncio.CancelledError:
             record.refuse("the service ended before it was imported")
             raise
-        except Exception:
+        except Exception:  # nobody awaits this task: the log and the record are where it is told
             LOG.exception("upload %s", record.upload)
             record.refuse("the service failed to import it; its log says more")
         finally:

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from PIL import Image, ImageDraw, ImageFont
+
+from viewer.app.picture_file import save_png
 
 __all__ = ["make_contact_sheet", "side_by_side"]
 
@@ -33,7 +36,7 @@ def make_contact_sheet(folder: Path, names: Sequence[str], title: str, target: P
         with Image.open(folder / name) as picture:
             sheet.paste(picture.resize(THUMBNAIL, Image.Resampling.LANCZOS), (left, top))
         draw.text((left, top + THUMBNAIL[1] + 4), Path(name).stem.replace("_", " "), INK, font)
-    _save(sheet, target)
+    save_png(target, np.asarray(sheet))
 
 
 def side_by_side(left: Path, right: Path, captions: tuple[str, str], target: Path) -> None:
@@ -49,10 +52,4 @@ def side_by_side(left: Path, right: Path, captions: tuple[str, str], target: Pat
             at = (left_edge + (first.width - box[2]) // 2, first.height - 52)
             draw.rectangle((at[0] - 12, at[1] - 6, at[0] + box[2] + 12, at[1] + box[3] + 8), PAPER)
             draw.text(at, caption, INK, font)
-    _save(sheet, target)
-
-
-def _save(sheet: Image.Image, target: Path) -> None:
-    part = target.with_name(target.name + ".part")
-    sheet.save(part, format="PNG")
-    part.replace(target)
+    save_png(target, np.asarray(sheet))

@@ -18,6 +18,7 @@ from msgspec import Meta
 import protocol
 from protocol.limits import MAX_EDITS, MAX_LOG_VERTICES, MAX_VERTICES
 from viewer.app.edit_drawing import new_edit, new_edit_id
+from viewer.app.whole_file import write_whole
 from viewer.errors import ViewerError
 from viewer.view_status import EditSettings
 
@@ -141,10 +142,8 @@ def write_edits(path: Path, edits: Sequence[protocol.Edit], grid: protocol.GridG
     Raises:
         EditFileError: it cannot be written.
     """
-    part = path.with_name(path.name + ".part")
     try:
-        part.write_bytes(text_of_edits(edits, grid))
-        part.replace(path)
+        write_whole(path, text_of_edits(edits, grid))
     except OSError as error:
         raise EditFileError(f"{path}: cannot be written: {error.strerror}") from None
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from viewer.app.whole_file import write_whole
 from viewer.commands import CommandError, SavePicture
 
 __all__ = ["checked_order", "picture_size", "save_png"]
@@ -57,9 +59,6 @@ def save_png(path: Path, pixels: npt.NDArray[np.uint8]) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    part = path.with_name(path.name + ".part")
-    try:
-        Image.fromarray(pixels).save(part, format="PNG")
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    packed = io.BytesIO()
+    Image.fromarray(pixels).save(packed, format="PNG")
+    write_whole(path, packed.getvalue())

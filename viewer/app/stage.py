@@ -152,8 +152,7 @@ class Stage:
 
     def pixels(self, target: moderngl.Framebuffer, size: tuple[int, int]) -> npt.NDArray[np.uint8]:
         """Return the colours of `target`, shape [height, width, 3], first row on top."""
-        raw = target.read(viewport=(0, 0, *size), components=3, alignment=1)
-        return np.frombuffer(raw, dtype=np.uint8).reshape(size[1], size[0], 3)[::-1].copy()
+        return Renderer.read_pixels(target, size)
 
     def close(self) -> None:
         """Release the renderer; the context belongs to whoever made it."""

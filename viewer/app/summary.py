@@ -8,6 +8,7 @@ from pathlib import Path
 
 from viewer.app.headless import HeadlessSession
 from viewer.app.viewer_app import ViewerApp
+from viewer.app.whole_file import write_whole
 from viewer.view_status import time_text
 
 __all__ = ["FlightSummary", "summarise", "table_text", "write_summary"]
@@ -81,9 +82,7 @@ def summarise(app: ViewerApp, session: HeadlessSession, run: str | None, started
 
 def write_summary(summary: FlightSummary, path: Path) -> None:
     """Write the figures as JSON; a half-written file never bears the name."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(json.dumps(asdict(summary), indent=2) + "\n", encoding="utf-8")
-    part.replace(path)
+    write_whole(path, (json.dumps(asdict(summary), indent=2) + "\n").encode())
 
 
 def table_text(summary: FlightSummary) -> str:

@@ -178,7 +178,8 @@ class Renderer:
         depth = np.frombuffer(self._target.read_depth(), dtype="<f4").reshape(height, width)
         return depth, self._unprojection
 
-    def read_pixels(self, framebuffer: moderngl.Framebuffer, size: tuple[int, int]) -> npt.NDArray[np.uint8]:
+    @staticmethod
+    def read_pixels(framebuffer: moderngl.Framebuffer, size: tuple[int, int]) -> npt.NDArray[np.uint8]:
         """The colours of a framebuffer, shape [height, width, 3], first row on top."""
         raw = framebuffer.read(viewport=(0, 0, *size), components=3, alignment=1)
         return np.frombuffer(raw, dtype=np.uint8).reshape(size[1], size[0], 3)[::-1].copy()
